@@ -10,6 +10,17 @@
 #include "console/text_sink.h"
 
 namespace vesalius::cli {
+namespace {
+
+std::unique_ptr<FrameSource> open_noted(const std::string& name, const SourceOptions& options, bool quiet) {
+  auto source = open_source(name, options);
+  if (!quiet) {
+    for (const std::string& note : source->notes()) say("note: " + note);
+  }
+  return source;
+}
+
+}  // namespace
 
 void add_camera_flags(CLI::App& command, SourceOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
@@ -70,11 +81,13 @@ void SourceFlags::add_to(CLI::App& command, bool required) {
 std::unique_ptr<FrameSource> SourceFlags::open(bool quiet, std::function<void(const std::string&)> say) const {
   SourceOptions options = options_;
   options.say = std::move(say);
-  auto source = open_source(name_, options);
-  if (!quiet) {
-    for (const std::string& note : source->notes()) cli::say("note: " + note);
-  }
-  return source;
+  return open_noted(name_, options, quiet);
+}
+
+std::unique_ptr<FrameSource> SourceFlags::open_other(const std::string& name, bool quiet) const {
+  SourceOptions options = options_;
+  options.start_s.reset();
+  return open_noted(name, options, quiet);
 }
 
 void add_frames_flag(CLI::App& command, int& frames) {

@@ -33,6 +33,8 @@ class SourceFlags {
   /// Opens the source. Its notes are printed unless `quiet`; `say` gets what a camera says later. Throws as
   /// open_source.
   std::unique_ptr<FrameSource> open(bool quiet, std::function<void(const std::string&)> say) const;
+  /// Opens another source with the same facts, of a camera of the same kind, from its beginning.
+  std::unique_ptr<FrameSource> open_other(const std::string& name, bool quiet) const;
   const std::string& name() const { return name_; }
   const SourceOptions& options() const { return options_; }
 

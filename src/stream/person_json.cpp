@@ -119,11 +119,20 @@ Json body_json(const TrackedPerson& person, const BodyModel& body, const JsonOpt
   return json;
 }
 
+Json cameras_json(const std::vector<SeenBy>& cameras) {
+  Json list = Json::array();
+  for (const SeenBy& seen : cameras) {
+    list.push_back({{"camera", seen.camera}, {"id", seen.id}, {"state", to_string(seen.state)}});
+  }
+  return list;
+}
+
 Json person_json(const TrackedPerson& tracked, bool followed, std::size_t index, const BodyModel& body,
                  const Camera& camera, const JsonOptions& options) {
   const Person& person = tracked.person;
   Json json = followed ? fields_json(tracked) : Json::object();
   json["index"] = index;
+  if (!tracked.seen_by.empty()) json["cameras"] = cameras_json(tracked.seen_by);
   json.update(fields_json(person));
   if (!options.brief) json["parts"] = points_json(body.parts, person.skeleton.parts, &camera);
   json["joints"] = joints_json(person.joints, body, options.brief ? nullptr : &camera, options);

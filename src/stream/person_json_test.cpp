@@ -181,6 +181,10 @@ TEST(PersonJson, PeopleWhoAreFollowedHaveIdsStatesAndVelocities) {
   const json alone = json::parse(frame_json(named("f"), seen_people({half_seen(body)}), body)).at("people").at(0);
   for (const auto& [key, value] : alone.items()) EXPECT_EQ(person.at(key), value) << key;
   EXPECT_FALSE(person.contains("smoothed"));
+  EXPECT_FALSE(person.contains("cameras")) << "there is one";
+  frame.people[0].seen_by = {{0, 3, TrackState::hidden}, {2, 5, TrackState::tracked}};
+  EXPECT_EQ(json::parse(frame_json(named("f"), frame, body)).at("people").at(0).at("cameras"),
+            json::parse(R"([{"camera":0,"id":3,"state":"hidden"},{"camera":2,"id":5,"state":"tracked"}])"));
   frame.people[0].smoothed = tracked.person.joints;
   frame.floor.reset();
   const json smoothed = json::parse(frame_json(named("f"), frame, body));

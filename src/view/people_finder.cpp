@@ -44,7 +44,8 @@ std::string new_path(const std::string& folder) {
 
 }  // namespace
 
-PeopleFinder::PeopleFinder(Settings settings, bool track) : settings_(std::move(settings)) {
+PeopleFinder::PeopleFinder(Settings settings, bool track, MergePeople merge)
+    : settings_(std::move(settings)), merge_(std::move(merge)) {
   if (track) tracks_.emplace(make_tracker(settings_->detector, settings_->options));
 }
 
@@ -91,6 +92,9 @@ ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played,
   if (with_stages) viewed.trace.emplace();
   if (tracks_) {
     follow(viewed);
+    const Frame& frame = *viewed.frame;
+    const double time_s = frame.arrived_s ? *frame.arrived_s : frame.time_s.value_or(viewed.at_s);
+    if (merge_) viewed.people = merge_(time_s, std::move(viewed.people));
   } else {
     const auto nothing = [](const Frame&) { return Prior{}; };
     viewed.people = seen_people(detect(*viewed.frame, nothing, viewed));
@@ -123,10 +127,10 @@ void TrackHistory::restart(const TrackOptions& options, const std::shared_ptr<co
   known_.push_back({kBefore, std::move(anew)});
 }
 
-Recording::Recording(const std::string& folder, double rate)
+PageRecording::PageRecording(const std::string& folder, double rate)
     : path_(new_path(folder)), file_(path_, rate), rate_(rate) {}
 
-void Recording::add_frame(const ViewedFrame& viewed, const BodyModel& body) {
+void PageRecording::add_frame(const ViewedFrame& viewed, const BodyModel& body) {
   if (viewed.at_s <= up_to_s_) return;
   Frame frame = *viewed.frame;
   if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/recordings/frame_recorder.h"
+#include "stream/merged_cameras.h"
 #include "vesalius/body_model.h"
 #include "vesalius/track_people.h"
 #include "view/frame_message.h"
@@ -53,7 +54,7 @@ class PeopleFinder {
   using Settings = std::shared_ptr<const FinderSettings>;
 
   /// Throws UsageError for an option outside its range.
-  PeopleFinder(Settings settings, bool track);
+  PeopleFinder(Settings settings, bool track, MergePeople merge = {});
 
   /// Returns a frame's people, with all that the page shows of them but the latency. If `settings` are not those of the
   /// frame before, people are followed anew where they have to be. With a trace if `with_stages`. Throws what the
@@ -67,14 +68,15 @@ class PeopleFinder {
 
   Settings settings_;
   std::optional<TrackHistory> tracks_;  ///< none if people are not followed
+  MergePeople merge_;                   ///< empty for one camera
   int frames_ = 0;
 };
 
 /// A recording of what a viewer shows. All throws Error naming the path if it cannot be written.
-class Recording {
+class PageRecording {
  public:
   /// Creates a new file in `folder`. Frames without times get those of `rate` frames a second.
-  Recording(const std::string& folder, double rate);
+  PageRecording(const std::string& folder, double rate);
 
   /// Adds a frame with its people unless its time is there already: a recording shows a source once, however it was
   /// moved in.

@@ -119,5 +119,23 @@ TEST(TrackHistory, BegunAnewItCountsOn) {
   EXPECT_THROW(shown.history().restart(options, shown.appearance(), nullptr), UsageError);
 }
 
+TEST(PeopleFinder, AddsWhomOtherCamerasSee) {
+  test::Crossing source(true);
+  const auto settings =
+      std::make_shared<const FinderSettings>(FinderSettings{{}, Detector(std::make_shared<test::Knowing>(source))});
+  std::vector<double> times;
+  PeopleFinder finder(settings, true, [&](double time_s, TrackedFrame people) {
+    times.push_back(time_s);
+    people.people.emplace_back().id = 70;
+    return people;
+  });
+  const auto played = std::make_shared<PlayedFrame>();
+  played->frame = source.frames()[3].frame;
+  const ViewedFrame viewed = finder.find(played, settings, false);
+  ASSERT_EQ(viewed.people.people.size(), 3U);
+  EXPECT_EQ(viewed.people.people.back().id, 70);
+  EXPECT_THAT(times, ElementsAre(3 / kUsualRate));
+}
+
 }  // namespace
 }  // namespace vesalius

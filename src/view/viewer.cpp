@@ -152,7 +152,7 @@ class Viewer::Session {
         now_({settings(options), nullptr}),
         player_(source, viewer.player, outputs()),
         server_(viewer.web, handlers()) {
-    const auto finder = std::make_shared<PeopleFinder>(now_.get().settings, facts_.track);
+    const auto finder = std::make_shared<PeopleFinder>(now_.get().settings, facts_.track, viewer.merge);
     worker_ = quiet_thread([this, finder] { find_all(*finder); });
     server_.start();
     player_.start();
@@ -169,7 +169,7 @@ class Viewer::Session {
   void say(const std::string& line) { server_.publish_text("", notice_message(line)); }
 
   void run(const std::function<bool()>& stop) {
-    std::optional<Recording> recording;
+    std::optional<PageRecording> recording;
     std::string failure;
     const auto record = [&](const std::optional<Found>& found, bool wanted) {
       try {

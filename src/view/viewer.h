@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "stream/merged_cameras.h"
 #include "vesalius/frame_source.h"
 #include "vesalius/model.h"
 #include "vesalius/track_people.h"
@@ -16,6 +17,7 @@ struct ViewerOptions {
   WebServerOptions web;
   PlayerOptions player;
   bool track = true;         ///< whether people are followed over frames
+  MergePeople merge = {};    ///< adds the people of other cameras to those who are followed; empty for one camera
   std::string folder = ".";  ///< where recordings are written
   std::string source;        ///< its name, for the page
   std::string model;         ///< its name, for the page

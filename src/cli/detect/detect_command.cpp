@@ -12,6 +12,7 @@
 #include "cli/detect/latency.h"
 #include "console/detector_flags.h"
 #include "console/interrupts.h"
+#include "console/merge_flags.h"
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
@@ -28,6 +29,7 @@ struct DetectArguments {
   explicit DetectArguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
+  MergeFlags merge;
   OutputRequest outputs;
   DetectorFlags detector;
   StreamOptions stream;
@@ -63,8 +65,9 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
   totals.frames_with_people += std::ranges::any_of(people, is_found) ? 1 : 0;
 }
 
-void detect_all(const DetectArguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
-                LateLines& late, Progress& progress, Totals& totals) {
+void detect_all(const DetectArguments& arguments, FrameSource& source, const Detector& detector,
+                std::optional<MergedCameras> cameras, DetectOutputs& outputs, LateLines& late, Progress& progress,
+                Totals& totals) {
   StreamOptions options = arguments.stream;
   options.stop = [&] {
     late.print(progress);
@@ -75,10 +78,13 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     if (note) late.add("note: " + *note);
   };
   std::size_t lossy = 0;  // addresses of which was said that they cannot be reached
-  const auto take = [&](const FoundFrame& found) {
+  int number = 0;         // of frames that could be read
+  const auto take = [&](FoundFrame found) {
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
+      if (cameras && !found.error)
+        found.people = cameras->merge(moment_of(*found.frame, number++), std::move(found.people));
       write_found(found, outputs, totals);
       if (!arguments.outputs.quiet) tell(hint.add(*found.frame, std::ranges::any_of(found.people.people, is_found)));
     } catch (const BrokenPipe&) {
@@ -129,9 +135,15 @@ void say_times(const FrameTimes& times) {
 
 void run_detect(const DetectArguments& arguments) {
   check(arguments.outputs);
+  arguments.merge.check(arguments.track.value_or(true));
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
+  std::optional<MergedCameras> cameras;
+  if (arguments.merge.asked()) {
+    cameras.emplace(
+        arguments.merge.make(arguments.source, detector, arguments.detector.options(), arguments.outputs.quiet));
+  }
   LateLines late;
   const auto source =
       arguments.source.open(arguments.outputs.quiet, [&late](const std::string& line) { late.add(line); });
@@ -141,14 +153,14 @@ void run_detect(const DetectArguments& arguments) {
   const int wanted = arguments.frames == 0 || (all >= 0 && all < arguments.frames) ? all : arguments.frames;
   Progress progress(wanted, !arguments.outputs.quiet);
   Totals totals;
-  totals.follows = arguments.track.value_or(source->is_sequence());
+  totals.follows = arguments.merge.asked() || arguments.track.value_or(source->is_sequence());
   const auto say_end = [&] {
     for (const std::string& line : outputs.losses()) say("vesalius: " + line);
     if (!arguments.outputs.quiet) say_totals(arguments, totals, progress);
     if (arguments.timing) say_times(totals.times);
   };
   try {
-    detect_all(arguments, *source, detector, outputs, late, progress, totals);
+    detect_all(arguments, *source, detector, std::move(cameras), outputs, late, progress, totals);
   } catch (const BrokenPipe&) {
     throw;
   } catch (const Error& e) {
@@ -210,6 +222,7 @@ void add_detect(CLI::App& program) {
   const auto arguments = std::make_shared<DetectArguments>(*command);
   add_output_flags(*command, arguments->outputs);
   arguments->source.add_to(*command);
+  arguments->merge.add_to(*command);
   add_threads_flag(*command, arguments->threads);
   add_time_flags(*command, *arguments);
   add_track_flag(*command, arguments->track);
@@ -224,6 +237,7 @@ Examples:
   vesalius detect frames/
   vesalius detect tum:walking -m small.forest --json - | jq .people
   vesalius detect session.mcap --json people.jsonl
+  vesalius detect left.mcap right.mcap --merge --extrinsics cameras.json --json people.jsonl
   vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
   command->callback([arguments] { run_detect(*arguments); });
 }

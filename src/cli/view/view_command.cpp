@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "cli/commands.h"
 #include "console/detector_flags.h"
 #include "console/interrupts.h"
+#include "console/merge_flags.h"
 #include "console/source_flags.h"
 #include "console/text_sink.h"
 #include "vesalius/base/keep_memory.h"
@@ -38,6 +40,7 @@ struct ViewArguments {
   explicit ViewArguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
+  MergeFlags merge;
   DetectorFlags detector;
   std::string host = "127.0.0.1";
   int port = 8080;
@@ -119,16 +122,27 @@ ViewerOptions viewer_options(const ViewArguments& arguments) {
 
 void run_view(const ViewArguments& arguments) {
   check_folder(arguments.folder);
+  arguments.merge.check(!arguments.no_track);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const PeopleOptions people = arguments.detector.options();
   const Model model = arguments.detector.loaded();
+  // The page changes the first camera's options; those of the others stay as they are now.
+  std::optional<Detector> others;
+  std::optional<MergedCameras> cameras;
+  if (arguments.merge.asked()) {
+    others.emplace(model, people.detect);
+    cameras.emplace(arguments.merge.make(arguments.source, *others, people, arguments.quiet));
+  }
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
   const auto source = arguments.source.open(arguments.quiet, [&page](const std::string& line) {
     say(line);
     if (Viewer* const shown = page) shown->say(line);
   });
-  const ViewerOptions options = viewer_options(arguments);
+  ViewerOptions options = viewer_options(arguments);
+  if (cameras) {
+    options.merge = [&cameras](double time_s, TrackedFrame seen) { return cameras->merge(time_s, std::move(seen)); };
+  }
   Viewer viewer(*source, model, people, options);
   page = &viewer;
   watch_interrupts();
@@ -166,6 +180,7 @@ void add_view(CLI::App& program) {
   const auto arguments = std::make_shared<ViewArguments>(*command);
   add_page_flags(*command, *arguments);
   arguments->source.add_to(*command);
+  arguments->merge.add_to(*command);
   add_threads_flag(*command, arguments->threads);
   command->add_flag("--no-track", arguments->no_track, "Find people in each frame alone, without ids");
   add_rate_flag(*command, arguments->rate, "Frames per second of a source without times");
