@@ -148,6 +148,7 @@ class Viewer::Session {
         first_options_(options),
         facts_{viewer.source, viewer.model, viewer.folder, viewer.track},
         rate_(viewer.player.rate),
+        merges_(viewer.merge != nullptr),
         say_(viewer.say),
         now_({settings(options), nullptr}),
         player_(source, viewer.player, outputs()),
@@ -334,7 +335,7 @@ class Viewer::Session {
       }
       try {
         ViewedFrame viewed = finder.find(job->played, job->settings, server_.clients_for_details() > 0);
-        tell(hint.add(*viewed.frame, !viewed.people.people.empty()));
+        tell(hint.add(*viewed.frame, merges_ || !viewed.people.people.empty()));
         const Clock::time_point now = Clock::now();
         const double result_ms = std::chrono::duration<double, std::milli>(now - job->arrived).count();
         if (viewed.frame->arrived_s) viewed.latency_ms = result_ms;
@@ -375,6 +376,7 @@ class Viewer::Session {
   const PeopleOptions first_options_;
   const ViewerFacts facts_;
   const double rate_;
+  const bool merges_;  ///< whether other cameras' people are there, without anybody's guesses
   const std::function<void(const std::string&)> say_;
 
   Guarded<Now> now_;

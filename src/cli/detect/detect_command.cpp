@@ -86,7 +86,9 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
       if (cameras && !found.error)
         found.people = cameras->merge(moment_of(*found.frame, number++), std::move(found.people));
       write_found(found, outputs, totals);
-      if (!arguments.outputs.quiet) tell(hint.add(*found.frame, std::ranges::any_of(found.people.people, is_found)));
+      // Of several cameras the list leaves out guesses, which say as well that nothing need be turned.
+      const bool somebody = cameras || std::ranges::any_of(found.people.people, is_found);
+      if (!arguments.outputs.quiet) tell(hint.add(*found.frame, somebody));
     } catch (const BrokenPipe&) {
       throw;
     } catch (const Error& e) {
