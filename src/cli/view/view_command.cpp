@@ -28,8 +28,6 @@
 #include "vesalius/parallel.h"
 #include "view/viewer.h"
 
-extern char** environ;
-
 namespace vesalius::cli {
 
 namespace {

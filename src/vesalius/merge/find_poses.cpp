@@ -185,7 +185,7 @@ void PoseFinder::add(double time_s, const std::vector<TrackedFrame>& seen) {
       for (const Joint& joint : person.person.joints.front()) {
         const Vector3d at = joint.position.cast<double>();
         JointPlace place{at - kJointsBehind_m * at.normalized()};
-        const double sigma = double(sigma_of(joint.confidence));
+        const auto sigma = double(sigma_of(joint.confidence));
         if (joint.state != State::none && joint.confidence >= kSure) place.variance_m2 = sigma * sigma;
         sighted.joints.push_back(place);
       }

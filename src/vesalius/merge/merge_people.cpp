@@ -229,6 +229,7 @@ TrackedPerson PeopleMerger::State::describe(MergedPerson& person) const {
     person.stance_camera = seen.front()->camera;
   }
   std::vector<const TrackedPerson*> members;
+  members.reserve(seen.size());
   for (const CameraSighting* sighting : seen) members.push_back(&sighting->person);
   TrackedPerson told = fuse_person(members);
   told.id = person.id;
