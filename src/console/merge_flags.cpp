@@ -105,7 +105,7 @@ MergedCameras MergeFlags::make(const SourceFlags& first, const Detector& detecto
   std::vector<Eigen::Isometry3f> first_from =
       is_there ? places_in(read_file(extrinsics_file_), extrinsics_file_, others_.size() + 1)
                : find(first, detector, options, quiet);
-  return {open(first, detector, options, quiet), std::move(first_from)};
+  return {detector.body(), open(first, detector, options, quiet), std::move(first_from)};
 }
 
 }  // namespace vesalius::cli

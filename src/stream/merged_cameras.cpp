@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vesalius/detect_stream.h"
+#include "vesalius/explain_unseen.h"
 #include "vesalius/merge/carry_people.h"
 
 namespace vesalius {
@@ -67,14 +68,17 @@ CameraPeople OtherCamera::at(double time_s) {
   return {people_, time_s - *people_s_};
 }
 
-MergedCameras::MergedCameras(std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from)
-    : others_(std::move(others)), merger_(std::move(first_from)) {}
+MergedCameras::MergedCameras(const BodyModel& body, std::vector<OtherCamera> others,
+                             std::vector<Eigen::Isometry3f> first_from)
+    : body_(body), others_(std::move(others)), merger_(std::move(first_from)) {}
 
-TrackedFrame MergedCameras::merge(double time_s, TrackedFrame people) {
+TrackedFrame MergedCameras::merge(const Frame& first, double time_s, TrackedFrame people) {
   std::vector<CameraPeople> seen(1);
   seen[0].people = std::move(people);
   for (OtherCamera& other : others_) seen.push_back(other.at(time_s));
-  return merger_.merge(std::move(seen));
+  TrackedFrame merged = merger_.merge(std::move(seen));
+  explain_unseen(first, body_, merged);
+  return merged;
 }
 
 std::optional<std::vector<FoundPose>> find_camera_poses(FrameSource& first, std::vector<OtherCamera> others,

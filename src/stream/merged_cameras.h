@@ -53,19 +53,21 @@ double moment_of(const Frame& frame, int number);
 /// Several cameras about the same people, of which the first is read by somebody else.
 class MergedCameras {
  public:
-  MergedCameras(std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from);
+  MergedCameras(const BodyModel& body, std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from);
 
-  /// Returns the people of all cameras at the first one's frame, in whose picture they are, as PeopleMerger does.
-  /// `time_s` is that of the frame (moment_of). Throws as OtherCamera::at.
-  TrackedFrame merge(double time_s, TrackedFrame people);
+  /// Returns the people of all cameras at the first one's frame, in whose picture they are, as PeopleMerger does, and
+  /// why that one does not see what none of them observes. `time_s` is the frame's (moment_of). Throws as
+  /// OtherCamera::at.
+  TrackedFrame merge(const Frame& first, double time_s, TrackedFrame people);
 
  private:
+  BodyModel body_;
   std::vector<OtherCamera> others_;
   PeopleMerger merger_;
 };
 
 /// What MergedCameras::merge does.
-using MergePeople = std::function<TrackedFrame(double time_s, TrackedFrame people)>;
+using MergePeople = std::function<TrackedFrame(const Frame& first, double time_s, TrackedFrame people)>;
 
 /// Finds how cameras stand by the people whom they see: follows those of the first one's frames and of the others
 /// until that is sure (PoseFinder::find) by half a minute of people whom several see, `stop` returns true, or the

@@ -85,17 +85,21 @@ TEST(MergedCameras, ShowPeopleOfBothUnderOneId) {
   const Detector detector(std::make_shared<test::Knowing>(first));
   std::vector<OtherCamera> others;
   others.emplace_back(std::make_unique<Borrowed>(second, 0.0), detector, PeopleOptions{});
-  MergedCameras cameras(std::move(others), {Eigen::Isometry3f::Identity(), Eigen::Isometry3f::Identity()});
+  MergedCameras cameras(detector.body(), std::move(others),
+                        {Eigen::Isometry3f::Identity(), Eigen::Isometry3f::Identity()});
   PeopleTracker tracker = make_tracker(detector, {});
   TrackedFrame merged;
   while (const std::optional<Frame> frame = first.next()) {
-    merged = cameras.merge(frame->time_s.value(), follow(detector, tracker, *frame));
+    merged = cameras.merge(*frame, frame->time_s.value(), follow(detector, tracker, *frame));
   }
   ASSERT_EQ(merged.people.size(), 2U);
   EXPECT_EQ(merged.people[0].id, 1);
   EXPECT_EQ(merged.people[1].id, 2);
   EXPECT_EQ(merged.people[0].seen_by.size(), 2U);
   EXPECT_FALSE(merged.people[0].person.mask.empty());
+  for (const Joint& joint : merged.people[0].person.joints[0]) {
+    EXPECT_EQ(joint.unseen == Unseen::none, joint.state == State::observed);
+  }
 }
 
 }  // namespace

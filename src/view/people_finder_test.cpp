@@ -124,7 +124,7 @@ TEST(PeopleFinder, AddsWhomOtherCamerasSee) {
   const auto settings =
       std::make_shared<const FinderSettings>(FinderSettings{{}, Detector(std::make_shared<test::Knowing>(source))});
   std::vector<double> times;
-  PeopleFinder finder(settings, true, [&](double time_s, TrackedFrame people) {
+  PeopleFinder finder(settings, true, [&](const Frame&, double time_s, TrackedFrame people) {
     times.push_back(time_s);
     people.people.emplace_back().id = 70;
     return people;

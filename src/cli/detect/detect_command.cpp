@@ -84,7 +84,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
       if (cameras && !found.error)
-        found.people = cameras->merge(moment_of(*found.frame, number++), std::move(found.people));
+        found.people = cameras->merge(*found.frame, moment_of(*found.frame, number++), std::move(found.people));
       write_found(found, outputs, totals);
       // Of several cameras the list leaves out guesses, which say as well that nothing need be turned.
       const bool somebody = cameras || std::ranges::any_of(found.people.people, is_found);

@@ -139,7 +139,9 @@ void run_view(const ViewArguments& arguments) {
   });
   ViewerOptions options = viewer_options(arguments);
   if (cameras) {
-    options.merge = [&cameras](double time_s, TrackedFrame seen) { return cameras->merge(time_s, std::move(seen)); };
+    options.merge = [&cameras](const Frame& frame, double time_s, TrackedFrame seen) {
+      return cameras->merge(frame, time_s, std::move(seen));
+    };
   }
   Viewer viewer(*source, model, people, options);
   page = &viewer;

@@ -65,7 +65,13 @@ void fuse_joints(const std::vector<const TrackedPerson*>& seen, const JointsOf& 
           places.push_back({joints[s][j].state, joints[s][j].position, joints[s][j].confidence});
       }
       const Known mean = mean_of(std::move(places));
-      if (mean.state != State::none) fused[s][j] = {mean.state, mean.at, mean.confidence};
+      Joint& joint = fused[s][j];
+      joint.unseen = Unseen::none;
+      joint.behind = -1;
+      if (mean.state == State::none) continue;
+      joint.state = mean.state;
+      joint.position = mean.at;
+      joint.confidence = mean.confidence;
     }
   }
 }
@@ -85,6 +91,8 @@ void fuse_parts(const std::vector<const TrackedPerson*>& seen, Skeleton& skeleto
       part.centre = mean.at;
       part.confidence = mean.confidence;
     }
+    part.unseen = Unseen::none;
+    part.behind = -1;
     skeleton.found += part.state == State::observed ? 1 : 0;
   }
 }

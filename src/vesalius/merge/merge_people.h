@@ -28,7 +28,8 @@ class PeopleMerger {
   /// Takes what each camera tells of the next moment, which is the first's frame. Returns its people: joints and parts
   /// as fuse_person makes them, TrackedPerson::seen_by, ids of this list alone, a mask where the first camera sees the
   /// person; stance and fitted body of the camera that sees the person best. Who is a guess to all cameras is left
-  /// out. The floor is the first's, or else that of another. Throws Error for another number of cameras.
+  /// out. The floor is the first's, or else that of another. Reasons of what is not observed
+  /// are those of one camera alone: explain_unseen gives them anew. Throws Error for another number of cameras.
   TrackedFrame merge(std::vector<CameraPeople> seen);
 
  private:
