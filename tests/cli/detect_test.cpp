@@ -63,7 +63,11 @@ TEST_F(Detect, QuietPrintsNothing) {
 
 void expect_point(const json& point) {
   const std::string state = point.at("state");
-  EXPECT_EQ(point.size(), 4U);
+  EXPECT_EQ(point.contains("unseen"), state != "observed");
+  EXPECT_EQ(point.size(), 4U + (point.contains("unseen") ? 1U : 0U) + (point.contains("behind") ? 1U : 0U));
+  if (point.contains("behind")) {
+    EXPECT_EQ(point.at("unseen"), "behind_person");
+  }
   EXPECT_EQ(point.at("xyz_m").is_null(), state == "none");
   EXPECT_EQ(point.at("px").is_null(), state == "none");
   EXPECT_TRUE(state == "none" || state == "predicted" || state == "observed") << state;

@@ -8,6 +8,7 @@ Bash runs each block of a document in a folder with the project's data/. `vesali
 with all flags of the example. Other programs (./dev, cmake, ctest) are not run.
 """
 
+import json
 import os
 import re
 import shutil
@@ -99,6 +100,8 @@ class Wrapper:
         if command in ("detect", "record", "bench", "view", "ros2"):
             for name in self.positional(words):
                 self.place(name, self.stand_in_of_source(name))
+        for name in self.values(words, "--extrinsics"):
+            self.place(name, "cameras.json")
         if command == "evaluate":
             for name in self.positional(words):
                 self.place(name, "nobody" if "empty" in name else "frames")
@@ -224,6 +227,9 @@ def make_stand_ins(program, source, folder):
     (folder / "rendered.forest").symlink_to(source / "data/models/small.forest")
     (folder / "depth.png").symlink_to(sorted((source / "data/sample/depth").iterdir())[0])
     vesalius("evaluate", source / "data/sample", "-q", "-m", folder / "some.forest", "--json", folder / "evaluation.json")
+    # Two cameras at one place: no example shows people over time to two.
+    here = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+    (folder / "cameras.json").write_text(json.dumps({"cameras": [{"first_from_this": here}] * 2}))
     # A tree of the paper's released format: one decision.
     (folder / "tree.txt").write_text("1\n10 0 0 0 0\n3\n9\n")
     sections = {}
