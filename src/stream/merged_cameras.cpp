@@ -68,9 +68,8 @@ CameraPeople OtherCamera::at(double time_s) {
   return {people_, time_s - *people_s_};
 }
 
-MergedCameras::MergedCameras(const BodyModel& body, std::vector<OtherCamera> others,
-                             std::vector<Eigen::Isometry3f> first_from)
-    : body_(body), others_(std::move(others)), merger_(std::move(first_from)) {}
+MergedCameras::MergedCameras(BodyModel body, std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from)
+    : body_(std::move(body)), others_(std::move(others)), merger_(std::move(first_from)) {}
 
 TrackedFrame MergedCameras::merge(const Frame& first, double time_s, TrackedFrame people) {
   std::vector<CameraPeople> seen(1);

@@ -53,7 +53,7 @@ double moment_of(const Frame& frame, int number);
 /// Several cameras about the same people, of which the first is read by somebody else.
 class MergedCameras {
  public:
-  MergedCameras(const BodyModel& body, std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from);
+  MergedCameras(BodyModel body, std::vector<OtherCamera> others, std::vector<Eigen::Isometry3f> first_from);
 
   /// Returns the people of all cameras at the first one's frame, in whose picture they are, as PeopleMerger does, and
   /// why that one does not see what none of them observes. `time_s` is the frame's (moment_of). Throws as
