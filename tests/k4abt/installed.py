@@ -5,7 +5,6 @@ are, and find library and model in the installation.
 Usage: installed.py SOURCE_DIR BUILD_DIR LIBK4A
 """
 import os
-import re
 import shutil
 import struct
 import subprocess
@@ -13,7 +12,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "standin"))
+from installed_library import WARNINGS, check_symbols, expect_line, expect_same, run  # noqa: E402
+
 SIZE = 640, 480
 CALIBRATION_BYTES = 1032
 
@@ -31,28 +32,6 @@ print(ctypes.CDLL(library).k4abt_tracker_create(calibration, Configuration(0, 1,
 """
 
 
-def run(*command, **more):
-    print("$", *command, flush=True)
-    return subprocess.run([str(each) for each in command], check=True, stdout=subprocess.PIPE, text=True, **more).stdout
-
-
-def expect_same(what, left, right):
-    if left != right:
-        sys.exit(f"{what}: {left}, expected {right}")
-
-
-def check_symbols(library, header, source):
-    """The library exports what its header declares and its list has, under the name that programs were linked to."""
-    exported = {line.split()[-1] for line in run("nm", "-D", "--defined-only", library).splitlines()}
-    listed = set(re.findall(r"^ +(k4abt_\w+);", (source / "src/k4abt/libk4abt.map").read_text(), re.MULTILINE))
-    declared = set(re.findall(r"\b(k4abt_\w+)\(", re.sub(r"/\*.*?\*/", "", header.read_text(), flags=re.DOTALL)))
-    expect_same("exported symbols", exported, listed)
-    expect_same("declared functions", declared, listed)
-    dynamic = run("readelf", "-d", library)
-    expect_same("soname", re.findall(r"\(SONAME\).*\[(.*)\]", dynamic), ["libk4abt.so.1.1"])
-    expect_same("needed", [name for name in re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic) if name.startswith("libk4a")], [])
-
-
 def check_discovery(library, recording, libk4a, folder):
     """libk4a is found under whatever name a program has loaded it, or told to be missing."""
     renamed = folder / "libk4a-0123abcd.so.1.4.2"
@@ -63,9 +42,7 @@ def check_discovery(library, recording, libk4a, folder):
                                           ([renamed], {"VESALIUS_K4A": "/none.so"}, "1 False\n", "VESALIUS_K4A=/none.so: ")):
         done = subprocess.run([sys.executable, "-c", BY_CTYPES, library, recording, *more], env={**environment, **variables},
                               capture_output=True, text=True, check=True)
-        expect_same("a tracker", done.stdout, answer)
-        if line not in done.stderr or len(done.stderr.splitlines()) != (1 if line else 0):
-            sys.exit(f"expected a line with {line!r}, got {done.stderr}")
+        expect_line(done, answer, line)
 
 
 def write_recording(path):
@@ -87,7 +64,7 @@ def main():
         (library,) = prefix.rglob("libk4abt.so.1.1")
         (header,) = prefix.rglob("k4abt.h")
         expect_same("folder", library.parent.parts[-2:], ("vesalius", "k4abt"))
-        check_symbols(library, header, source)
+        check_symbols(library, header, source / "src/k4abt/libk4abt.map", r"k4abt_\w+", "libk4abt.so.1.1", "libk4a")
         write_recording(recording)
         check_discovery(library, recording, libk4a, folder)
         environment = {**os.environ, "LD_LIBRARY_PATH": f"{library.parent}:{libk4a.parent}", "FAKE_K4A": str(recording), "VESALIUS_MODELS": ""}

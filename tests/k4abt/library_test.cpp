@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "../standin/test_program.h"
 #include "io/files/test_files.h"
 #include "io/lens/lens.h"
 #include "io/sources/test_rooms.h"
@@ -573,15 +574,6 @@ TEST(K4abt, OneTrackerServesSeveralThreads) {
   EXPECT_EQ(taken, kFrames);
 }
 
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "cannot be run";
-  std::array<char, 256> part{};
-  while (std::fgets(part.data(), int(part.size()), pipe) != nullptr) text += part.data();
-  return text + (pclose(pipe) == 0 ? "" : "failed");
-}
-
 /// Programs in C and C++ that were written for the interface say of a recording what the C++ tracker does.
 // Labels: slow
 TEST(K4abt, ProgramsOfTheInterfaceRun) {
@@ -615,8 +607,8 @@ TEST(K4abt, ProgramsOfTheInterfaceRun) {
   }
   file.close();
   EXPECT_THAT(expected, HasSubstr("\n1: "));
-  EXPECT_EQ(output_of("FAKE_K4A='" + (folder / "recording") + "' " VESALIUS_LIVE_LOOP), expected);
-  EXPECT_EQ(output_of(VESALIUS_OFFLINE_PROCESSOR " '" + (folder / "recording") + "'"), expected);
+  EXPECT_EQ(test::output_of("FAKE_K4A='" + (folder / "recording") + "' " VESALIUS_LIVE_LOOP), expected);
+  EXPECT_EQ(test::output_of(VESALIUS_OFFLINE_PROCESSOR " '" + (folder / "recording") + "'"), expected);
 }
 
 }  // namespace

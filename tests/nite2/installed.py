@@ -5,7 +5,6 @@ and find library and model in the installation.
 Usage: installed.py SOURCE_DIR BUILD_DIR LIBOPENNI2
 """
 import os
-import re
 import shutil
 import struct
 import subprocess
@@ -13,7 +12,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "standin"))
+from installed_library import WARNINGS, check_symbols, expect_line, expect_same, run  # noqa: E402
+
 SIZE = 160, 120
 OPENNI2_HEADERS = Path("/usr/include/openni2")
 
@@ -28,28 +29,6 @@ print(nite.niteInitialize(), nite.niteInitializeUserTracker(ctypes.byref(tracker
 """
 
 
-def run(*command, **more):
-    print("$", *command, flush=True)
-    return subprocess.run([str(each) for each in command], check=True, stdout=subprocess.PIPE, text=True, **more).stdout
-
-
-def expect_same(what, left, right):
-    if left != right:
-        sys.exit(f"{what}: {left}, expected {right}")
-
-
-def check_symbols(library, header, source):
-    """The library exports what its header declares and its list has, under the name that programs were linked to."""
-    exported = {line.split()[-1] for line in run("nm", "-D", "--defined-only", library).splitlines()}
-    listed = set(re.findall(r"^ +(nite\w+);", (source / "src/nite2/libNiTE2.map").read_text(), re.MULTILINE))
-    declared = set(re.findall(r"\b(nite[A-Z]\w+)\(", re.sub(r"/\*.*?\*/", "", header.read_text(), flags=re.DOTALL)))
-    expect_same("exported symbols", exported, listed)
-    expect_same("declared functions", declared, listed)
-    dynamic = run("readelf", "-d", library)
-    expect_same("soname", re.findall(r"\(SONAME\).*\[(.*)\]", dynamic), ["libNiTE2.so"])
-    expect_same("needed", [name for name in re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic) if name.startswith("libOpenNI2")], [])
-
-
 def check_discovery(library, recording, openni2, folder):
     """libOpenNI2 is found under whatever name a program has loaded it, or told to be missing."""
     renamed = folder / "libOpenNI2-0123abcd.so.0"
@@ -60,9 +39,7 @@ def check_discovery(library, recording, openni2, folder):
                                           ([renamed], {"VESALIUS_OPENNI2": "/none.so"}, "1 3 False\n", "VESALIUS_OPENNI2=/none.so: ")):
         done = subprocess.run([sys.executable, "-c", BY_CTYPES, library, *more], env={**environment, **variables}, capture_output=True, text=True,
                               check=True)
-        expect_same("a tracker", done.stdout, answer)
-        if line not in done.stderr or len(done.stderr.splitlines()) != (1 if line else 0):
-            sys.exit(f"expected a line with {line!r}, got {done.stderr}")
+        expect_line(done, answer, line)
 
 
 def write_recording(path):
@@ -81,7 +58,7 @@ def main():
         (library,) = prefix.rglob("libNiTE2.so")
         (header,) = prefix.rglob("NiteCAPI.h")
         expect_same("folder", library.parent.parts[-2:], ("vesalius", "nite2"))
-        check_symbols(library, header, source)
+        check_symbols(library, header, source / "src/nite2/libNiTE2.map", r"nite[A-Z]\w+", "libNiTE2.so", "libOpenNI2")
         write_recording(recording)
         check_discovery(library, recording, openni2, folder)
         environment = {**os.environ, "LD_LIBRARY_PATH": f"{library.parent}:{openni2.parent}", "FAKE_OPENNI2": str(recording), "VESALIUS_MODELS": ""}

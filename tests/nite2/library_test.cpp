@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "../standin/test_program.h"
 #include "io/files/test_files.h"
 #include "io/sources/test_rooms.h"
 #include "vesalius/model_file.h"
@@ -890,15 +891,6 @@ TEST(Nite2, AThousandFramesNeedNoMoreMemory) {
   EXPECT_LT(resident_bytes(), before + kMost);
 }
 
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "cannot be run";
-  std::array<char, 256> part{};
-  while (std::fgets(part.data(), int(part.size()), pipe) != nullptr) text += part.data();
-  return text + (pclose(pipe) == 0 ? "" : "failed");
-}
-
 /// Programs in C and C++ that were written for the interface say of a recording what the C++ tracker does.
 // Labels: slow
 TEST(Nite2, ProgramsOfTheInterfaceRun) {
@@ -944,7 +936,7 @@ TEST(Nite2, ProgramsOfTheInterfaceRun) {
   EXPECT_THAT(expected, HasSubstr("\n1 1: 2 "));
   const std::string environment = "VESALIUS_MODEL='" + kModel + "' FAKE_OPENNI2='" + (folder / "recording") + "' ";
   for (const std::string program : {VESALIUS_USER_LOOP, VESALIUS_LISTENER}) {
-    EXPECT_EQ(output_of(environment + program + " " + std::to_string(frames)), expected) << program;
+    EXPECT_EQ(test::output_of(environment + program + " " + std::to_string(frames)), expected) << program;
   }
 }
 
