@@ -16,11 +16,11 @@ namespace vesalius {
 namespace {
 
 // Chosen on rendered people; docs/tracking.md says how often the reasons are right.
-constexpr float kReach_m = 0.12F;       // about a predicted place: what is predicted is that far off
-constexpr float kGuessReach_m = 0.18F;  // about a guessed one
-constexpr float kFlesh_m = 0.18F;       // by which the own body must be nearer: predicted places are a little too deep
-constexpr float kNearer_m = 0.05F;      // by which others must be nearer
-constexpr float kSeenPast = 0.25F;      // weight of where the camera sees past: there it cannot be
+constexpr float kPredictedReach_m = 0.12F;  // about a predicted place: what is predicted is that far off
+constexpr float kGuessReach_m = 0.18F;      // about a guessed one
+constexpr float kFlesh_m = 0.18F;   // by which the own body must be nearer: predicted places are a little too deep
+constexpr float kNearer_m = 0.05F;  // by which others must be nearer
+constexpr float kSeenPast = 0.25F;  // weight of where the camera sees past: there it cannot be
 constexpr float kBeforeCamera_m = 0.05F;
 
 bool is_blank_row(const DepthImage& depth, int v) {
@@ -85,7 +85,7 @@ class UnseenSearch {
       point.unseen = Unseen::out_of_picture;
       return;
     }
-    look_about(place, point.state == State::none ? kGuessReach_m : kReach_m);
+    look_about(place, point.state == State::none ? kGuessReach_m : kPredictedReach_m);
     const auto most = static_cast<std::size_t>(std::ranges::max_element(votes_) - votes_.begin());
     point.unseen = most < kCauses.size() ? kCauses[most] : Unseen::behind_person;
     if (most >= kCauses.size()) point.behind = int(most - kCauses.size());

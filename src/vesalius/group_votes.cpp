@@ -17,13 +17,13 @@ using Eigen::Vector3f;
 constexpr int kSample = 900;
 constexpr int kEvery = 3;             // votes of the sample from one start to the next
 constexpr float kSameStart_m = 0.1F;  // starts this near climb to the same peak
-constexpr int kRounds = 4;
-constexpr float kReach_m = 0.3F;  // of the kernel, which is much like a Gaussian of 10 cm
+constexpr int kShiftRounds = 4;
+constexpr float kVoteReach_m = 0.3F;  // of the kernel, which is much like a Gaussian of 10 cm
 constexpr float kLeastMass_m2 = 0.004F;
 constexpr float kApart_m = 0.3F;  // least distance of two peaks
 constexpr float kNeighbour_m = 1.F;
-constexpr float kLeastShare = 0.15F;  // least mass of a peak as a share of its lightest neighbour's
-constexpr float kOwn_m = 0.6F;        // most distance of a vote from its peak
+constexpr float kLeastGroupShare = 0.15F;  // least mass of a peak as a share of its lightest neighbour's
+constexpr float kOwn_m = 0.6F;             // most distance of a vote from its peak
 
 /// A pixel that votes.
 struct Vote {
@@ -95,13 +95,13 @@ std::vector<Vector3f> choose_starts(const VoteSample& votes) {
 
 /// Returns where the densest votes near `at` are. The kernel is a polynomial, the same on all processors.
 Peak climb(const VoteSample& votes, Vector3f at) {
-  constexpr float kSquare = 1.F / (kReach_m * kReach_m);
+  constexpr float kSquare = 1.F / (kVoteReach_m * kVoteReach_m);
   for (int round = 0;; ++round) {
     const Eigen::ArrayXf x = votes.x - at.x(), y = votes.y - at.y(), z = votes.z - at.z();
     const Eigen::ArrayXf left = (1.F - kSquare * (x.square() + y.square() + z.square())).max(0.F);
     const Eigen::ArrayXf weight = votes.area_m2 * left.square().square();
     const float mass = weight.sum();
-    if (round == kRounds || mass == 0.F) return {at, mass};
+    if (round == kShiftRounds || mass == 0.F) return {at, mass};
     at += Vector3f((weight * x).sum(), (weight * y).sum(), (weight * z).sum()) / mass;
   }
 }
@@ -123,7 +123,7 @@ std::vector<Peak> find_peaks(const std::vector<Vote>& votes) {
       apart = apart && distance_m > kApart_m;
       if (distance_m < kNeighbour_m) lightest_m2 = other.mass_m2;
     }
-    if (apart && peak.mass_m2 > kLeastShare * lightest_m2) peaks.push_back(peak);
+    if (apart && peak.mass_m2 > kLeastGroupShare * lightest_m2) peaks.push_back(peak);
   }
   return peaks;
 }

@@ -18,8 +18,7 @@ constexpr double kMoment_s = 0.199;          // a fifth of a second, however tim
 constexpr std::size_t kMostMoments = 3000;   // ten minutes
 constexpr int kLeastMoments = 15;            // three seconds
 constexpr std::size_t kFittedMoments = 200;  // of two people that may be one
-constexpr float kSure = 0.4F;                // confidence of joints that count
-constexpr double kBias_m = 0.03;             // by which joints err as seen from another side
+constexpr float kSureJoint = 0.4F;           // confidence of joints that count
 constexpr std::size_t kLeastJoints = 4;
 constexpr double kSame_m = 0.25;     // root of the mean square distance of joints of one person, at most
 constexpr double kRival = 0.7;       // share of the best one's support that another way to be the same has at most
@@ -82,7 +81,7 @@ class PoseFinder::Pair {
     for (std::size_t j = 0; j < std::min(a.joints.size(), b.joints.size()); ++j) {
       const JointPlace &to = a.joints[j], &from = b.joints[j];
       if (to.variance_m2 > 0.0 && from.variance_m2 > 0.0) {
-        pairs.push_back({to.at, from.at, to.variance_m2 + from.variance_m2 + kBias_m * kBias_m});
+        pairs.push_back({to.at, from.at, to.variance_m2 + from.variance_m2 + double(kJointBias_m * kJointBias_m)});
       }
     }
     return pairs;
@@ -186,7 +185,7 @@ void PoseFinder::add(double time_s, const std::vector<TrackedFrame>& seen) {
         const Vector3d at = joint.position.cast<double>();
         JointPlace place{at - kJointsBehind_m * at.normalized()};
         const auto sigma = double(sigma_of(joint.confidence));
-        if (joint.state != State::none && joint.confidence >= kSure) place.variance_m2 = sigma * sigma;
+        if (joint.state != State::none && joint.confidence >= kSureJoint) place.variance_m2 = sigma * sigma;
         sighted.joints.push_back(place);
       }
     }

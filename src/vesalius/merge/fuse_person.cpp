@@ -10,9 +10,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kWrong = 2.F;      // standard deviations of two places beyond which one of them is wrong
-constexpr float kBias_m = 0.03F;   // by which joints err as seen from another side
-constexpr float kPredicted = 4.F;  // by which a variance grows: predictions that err do so by more than others
+constexpr float kWrongSigmas = 2.F;  // standard deviations of two places beyond which one of them is wrong
+constexpr float kPredicted = 4.F;    // by which a variance grows: predictions that err do so by more than others
 
 /// A place as one camera knows it.
 struct Known {
@@ -27,8 +26,8 @@ struct Known {
 };
 
 bool is_wrong_beside(const Known& sure, const Known& other) {
-  const float variance = sure.variance() + other.variance() + kBias_m * kBias_m;
-  return (sure.at - other.at).squaredNorm() > kWrong * kWrong * variance;
+  const float variance = sure.variance() + other.variance() + kJointBias_m * kJointBias_m;
+  return (sure.at - other.at).squaredNorm() > kWrongSigmas * kWrongSigmas * variance;
 }
 
 /// Returns the mean of places; state none for none.

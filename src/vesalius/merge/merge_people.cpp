@@ -24,7 +24,7 @@ constexpr float kMostCost = 8.F;     // at which somebody in one camera is the o
 constexpr float kKnownIs = 3.F;      // that the id of a camera counts for the one who had it, and against others
 constexpr float kTogether_m = 0.4F;  // two who are one all the time
 constexpr double kTogether_s = 0.5;
-constexpr double kExpect_s = 1.0;        // after being seen; later only an id tells who it is
+constexpr double kSeenLately_s = 1.0;    // after being seen; later only an id tells who it is
 constexpr std::size_t kRemembered = 64;  // of those who left
 
 /// Somebody whom a camera sees, in the first camera's frame.
@@ -118,7 +118,7 @@ std::vector<CameraSighting> PeopleMerger::State::carry_all(std::vector<CameraPeo
 float PeopleMerger::State::cost(const MergedPerson& person, const CameraSighting& sighting) const {
   const auto whose = known.find({sighting.camera, sighting.person.id});
   const bool is_known = whose != known.end(), is_this = is_known && whose->second == person.id;
-  const bool is_recent = now_s - person.seen_s <= kExpect_s;
+  const bool is_recent = now_s - person.seen_s <= kSeenLately_s;
   // Whom no other camera sees is whoever has the id again, wherever that is, but for somebody who fits better.
   if (!person.is_found() && !is_recent) return is_this ? -kKnownIs : std::numeric_limits<float>::infinity();
   const Vector3f at = person.is_found() ? person.found_middle() : person.motion.position();

@@ -12,7 +12,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kAlike = 25.0;          // pairs that count as one
-constexpr double kFar = 3.0;             // standard deviations at which a pair has a quarter of its weight
+constexpr double kFarSigmas = 3.0;       // standard deviations at which a pair has a quarter of its weight
 constexpr double kUpSigma = 0.005;       // of the floor's direction, radians
 constexpr double kHeightSigma_m = 0.01;  // of the height over it
 
@@ -38,7 +38,7 @@ struct Normal {
 void add_points(const Eigen::Isometry3d& guess, const std::vector<PointPair>& pairs, Normal& normal) {
   for (const PointPair& pair : pairs) {
     const Vector3d at = guess * pair.from, off = at - pair.to;
-    const double far = off.squaredNorm() / (kFar * kFar * pair.variance_m2);
+    const double far = off.squaredNorm() / (kFarSigmas * kFarSigmas * pair.variance_m2);
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << -cross_matrix(at), Matrix3d::Identity();
     normal.add<3>(jacobian, off, 1.0 / (kAlike * pair.variance_m2 * (1.0 + far) * (1.0 + far)));
