@@ -41,7 +41,6 @@ void MergeFlags::add_to(CLI::App& command) {
   const std::string group = "Several cameras about the same people";
   command.add_option("MORE", others_, "With --merge: further sources, of the other cameras")
       ->type_name("SOURCE")
-      ->expected(0, int(kMostOthers))
       ->group(group);
   command
       .add_flag("--merge", merge_,
@@ -90,6 +89,9 @@ std::vector<Eigen::Isometry3f> MergeFlags::find(const SourceFlags& first, const 
 
 void MergeFlags::check(bool follows) const {
   if (merge_ && others_.empty()) throw UsageError("--merge expects further sources after the first");
+  if (others_.size() > kMostOthers) {
+    throw UsageError(fmt::format("{} sources, expected at most {}", others_.size() + 1, kMostOthers + 1));
+  }
   if (merge_ && !follows) throw UsageError("--merge follows people, which --no-track forbids");
   if (merge_) return;
   if (!others_.empty()) {
