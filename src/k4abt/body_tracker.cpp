@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "k4abt/guard.h"
+#include "standin/pulled_frames.h"
 #include "vesalius/base/quiet_thread.h"
 #include "vesalius/error.h"
 #include "vesalius/track_people.h"
@@ -79,7 +80,7 @@ void BodyTracker::end() {
 
 void BodyTracker::run() {
   try {
-    Captures captures(*this);
+    PulledFrames captures([this] { return next_frame(); });
     PeopleTracker tracker = make_tracker(*detector_, {});
     stream_frames(captures, *detector_, tracker, {}, [&](const FoundFrame& found) { return take(found); });
   } catch (...) {

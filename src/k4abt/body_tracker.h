@@ -17,7 +17,6 @@
 #include "k4abt/read_capture.h"
 #include "standin/body_smoother.h"
 #include "vesalius/detect_stream.h"
-#include "vesalius/frame_source.h"
 
 namespace vesalius::k4abt {
 
@@ -45,17 +44,6 @@ class BodyTracker {
   void end();
 
  private:
-  /// The captures as a source of frames, which waits for them.
-  class Captures final : public FrameSource {
-   public:
-    explicit Captures(BodyTracker& tracker) : tracker_(tracker) {}
-    std::optional<Frame> next() override { return tracker_.next_frame(); }
-    int size() const override { return -1; }
-
-   private:
-    BodyTracker& tracker_;
-  };
-
   void run();
   std::optional<Frame> next_frame();
   bool take(const FoundFrame& found);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "nite2/guard.h"
+#include "standin/pulled_frames.h"
 #include "vesalius/error.h"
 #include "vesalius/track_people.h"
 
@@ -104,7 +105,7 @@ void UserTracker::tell_listeners() {
 
 void UserTracker::run() {
   try {
-    Pictures pictures(*this);
+    PulledFrames pictures([this] { return next_frame(); });
     PeopleTracker tracker = make_tracker(*detector_, {});
     stream_frames(pictures, *detector_, tracker, {}, [&](FoundFrame found) { return take(std::move(found)); });
   } catch (...) {

@@ -18,7 +18,6 @@
 #include "nite2/users.h"
 #include "standin/body_smoother.h"
 #include "vesalius/detect_stream.h"
-#include "vesalius/frame_source.h"
 
 namespace vesalius::nite2 {
 
@@ -69,17 +68,6 @@ class UserTracker : public std::enable_shared_from_this<UserTracker> {
     NiteUserTrackerCallbacks* callbacks;
     void* cookie;
   };
-  /// The pictures as a source of frames, which waits for them.
-  class Pictures final : public FrameSource {
-   public:
-    explicit Pictures(UserTracker& tracker) : tracker_(tracker) {}
-    std::optional<Frame> next() override { return tracker_.next_frame(); }
-    int size() const override { return -1; }
-
-   private:
-    UserTracker& tracker_;
-  };
-
   void run();
   std::optional<Seen> next_picture();
   std::optional<Frame> next_frame();
