@@ -19,9 +19,8 @@ constexpr int kAsk = 25;      // moments between two tries
 
 }  // namespace
 
-double moment_of(const Frame& frame, int number) {
-  if (frame.arrived_s) return *frame.arrived_s;
-  return frame.time_s.value_or(double(number) / kUsualRate);
+double moment_of(const Frame& frame, double untimed_s) {
+  return frame.arrived_s ? *frame.arrived_s : frame.time_s.value_or(untimed_s);
 }
 
 OtherCamera::OtherCamera(std::unique_ptr<FrameSource> source, const Detector& detector, const PeopleOptions& options)
@@ -30,7 +29,7 @@ OtherCamera::OtherCamera(std::unique_ptr<FrameSource> source, const Detector& de
 std::optional<OtherCamera::Taken> OtherCamera::read(double first_time_s) {
   std::optional<Frame> frame = source_->next();
   if (!frame) return std::nullopt;
-  const double time_s = moment_of(*frame, read_++);
+  const double time_s = moment_of(*frame, read_++ / kUsualRate);
   // Recordings that count from their own beginnings began together, as far as anybody knows.
   if (!offset_s_) offset_s_ = std::abs(time_s - first_time_s) > kDay_s ? first_time_s - time_s : 0.0;
   return Taken{std::move(*frame), time_s + *offset_s_};
@@ -89,7 +88,7 @@ std::optional<std::vector<FoundPose>> find_camera_poses(FrameSource& first, std:
   int asked = 0, number = 0;
   const auto take = [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
-    const double time_s = moment_of(*found.frame, number++);
+    const double time_s = moment_of(*found.frame, number++ / kUsualRate);
     std::vector<TrackedFrame> seen = {found.people};
     for (OtherCamera& other : others) {
       CameraPeople people = other.at(time_s);

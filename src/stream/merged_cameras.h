@@ -47,8 +47,8 @@ class OtherCamera {
 };
 
 /// Returns when a frame was taken: as this machine got it from a camera that is plugged in, otherwise as its source
-/// says. Frames without times have those of `number`, from 0.
-double moment_of(const Frame& frame, int number);
+/// says, or `untimed_s` where it has no time. Seconds.
+double moment_of(const Frame& frame, double untimed_s);
 
 /// Several cameras about the same people, of which the first is read by somebody else.
 class MergedCameras {

@@ -93,8 +93,7 @@ ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played,
   if (tracks_) {
     follow(viewed);
     const Frame& frame = *viewed.frame;
-    const double time_s = frame.arrived_s ? *frame.arrived_s : frame.time_s.value_or(viewed.at_s);
-    if (merge_) viewed.people = merge_(frame, time_s, std::move(viewed.people));
+    if (merge_) viewed.people = merge_(frame, moment_of(frame, viewed.at_s), std::move(viewed.people));
   } else {
     const auto nothing = [](const Frame&) { return Prior{}; };
     viewed.people = seen_people(detect(*viewed.frame, nothing, viewed));

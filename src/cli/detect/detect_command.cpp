@@ -83,8 +83,10 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
-      if (cameras && !found.error)
-        found.people = cameras->merge(*found.frame, moment_of(*found.frame, number++), std::move(found.people));
+      if (cameras && !found.error) {
+        const double time_s = moment_of(*found.frame, number++ / kUsualRate);
+        found.people = cameras->merge(*found.frame, time_s, std::move(found.people));
+      }
       write_found(found, outputs, totals);
       // Of several cameras the list leaves out guesses, which say as well that nothing need be turned.
       const bool somebody = cameras || std::ranges::any_of(found.people.people, is_found);
