@@ -99,6 +99,7 @@ std::optional<std::vector<FoundPose>> find_camera_poses(FrameSource& first, std:
     }
     finder.add(time_s, seen);
     progress(finder.shared_moments());
+    if (finder.is_full()) return false;  // cameras that are plugged in do not end
     if (finder.shared_moments() < kEnough + asked * kAsk) return true;
     ++asked;
     poses = finder.find();

@@ -70,8 +70,9 @@ class MergedCameras {
 using MergePeople = std::function<TrackedFrame(const Frame& first, double time_s, TrackedFrame people)>;
 
 /// Finds how cameras stand by the people whom they see: follows those of the first one's frames and of the others
-/// until that is sure (PoseFinder::find) by half a minute of people whom several see, `stop` returns true, or the
-/// frames end. `progress` gets how many moments there were. Returns nothing if it never was sure.
+/// until that is sure (PoseFinder::find) by half a minute of people whom several see, `stop` returns true, ten
+/// minutes are over, or the frames end. `progress` gets how many moments there were. Returns nothing if it never was
+/// sure.
 std::optional<std::vector<FoundPose>> find_camera_poses(FrameSource& first, std::vector<OtherCamera> others,
                                                         const Detector& detector, const PeopleOptions& options,
                                                         const std::function<bool()>& stop,

@@ -164,9 +164,11 @@ class PoseFinder::Pair {
 
 PoseFinder::PoseFinder(std::size_t cameras) : cameras_(cameras), floors_(cameras) {}
 
+bool PoseFinder::is_full() const { return moments_.size() >= kMostMoments; }
+
 void PoseFinder::add(double time_s, const std::vector<TrackedFrame>& seen) {
   if (seen.size() != cameras_) throw Error("poses: people of another number of cameras than there are");
-  if (moments_.size() >= kMostMoments || (!moments_.empty() && std::abs(time_s - last_s_) < kMoment_s)) return;
+  if (is_full() || (!moments_.empty() && std::abs(time_s - last_s_) < kMoment_s)) return;
   last_s_ = time_s;
   Moment& moment = moments_.emplace_back();
   moment.people.resize(cameras_);

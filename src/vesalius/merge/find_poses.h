@@ -39,6 +39,9 @@ class PoseFinder {
   /// for sure: by three seconds with the same people, and only one way in which they can be the same.
   std::optional<std::vector<FoundPose>> find() const;
 
+  /// Returns whether ten minutes are known; nothing is added then.
+  bool is_full() const;
+
   /// Returns at how many moments somebody was seen by at least two cameras.
   int shared_moments() const { return shared_; }
 

@@ -97,6 +97,15 @@ TEST(FindPoses, DoesNotChooseAmongPeopleWhoMoveAlike) {
   expect_near((*found)[1], poses[1]);
 }
 
+TEST(FindPoses, EndsAfterTenMinutes) {
+  PoseFinder finder(2);
+  watch(finder, {Isometry3f::Identity(), test::turned_about(90.F)}, {{}, {}}, 599.0);
+  EXPECT_FALSE(finder.is_full());
+  watch(finder, {Isometry3f::Identity(), test::turned_about(90.F)}, {{}, {}}, 2.0);
+  EXPECT_TRUE(finder.is_full());
+  EXPECT_FALSE(finder.find());
+}
+
 TEST(FindPoses, RefusesOtherNumbersOfCameras) {
   PoseFinder finder(2);
   EXPECT_THROW(finder.add(0.0, std::vector<TrackedFrame>(3)), Error);
