@@ -10,6 +10,7 @@
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
 #include "io/model/old_model.h"
@@ -67,7 +68,7 @@ void convert_model(std::vector<std::string> paths, const std::string& body, bool
   save_model(model, out);
   if (quiet) return;
   say(model.network != nullptr ? fmt::format("{}: a network of {} layers", out, model.network->layers.size())
-                               : fmt::format("{}: {} trees", out, model.forest.trees.size()));
+                               : out + ": " + counted(std::ssize(model.forest.trees), "tree"));
 }
 
 void convert_frames(const ConvertArguments& arguments) {
@@ -84,11 +85,11 @@ void convert_frames(const ConvertArguments& arguments) {
   while (const auto frame = source->next()) {
     writer->write(*frame);
     progress.step();
-    if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+    if (interrupted()) throw Error("interrupted after " + counted(progress.done(), "frame"));
   }
   writer->close();
   progress.clear();
-  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.paths[1], progress.done()));
+  if (!arguments.quiet) say(arguments.paths[1] + ": " + counted(progress.done(), "frame"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "console/satellites.h"
 #include "console/text_sink.h"
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "io/model/model_sections.h"
 #include "io/recordings/recording_formats.h"
 #include "io/sensors/sensor_drivers.h"
@@ -178,7 +179,7 @@ Json source_facts(const std::string& uri, const FrameSource& source) {
 }
 
 std::string source_text(const std::string& uri, const FrameSource& source) {
-  const std::string frames = source.size() < 0 ? "frames" : fmt::format("{} frames", source.size());
+  const std::string frames = source.size() < 0 ? "frames" : counted(source.size(), "frame");
   std::string text = fmt::format("{}: {}, {}\n{}", uri, frames,
                                  source.is_sequence() ? "with times: people are followed" : "without times",
                                  to_text(source.contents()));

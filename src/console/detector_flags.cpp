@@ -67,9 +67,7 @@ Detector DetectorFlags::make() const {
 
 DeviceFlag::DeviceFlag(CLI::App& command, const std::string& group) {
   CLI::Option* option =
-      command.add_option("--device", device_,
-                         "What labels pixels: cpu, cuda or cuda:N (a card), or auto, a card where one "
-                         "works and otherwise the processor. The labels are the same");
+      command.add_option("--device", device_, device_help("What labels pixels", "cuda or cuda:N (a card)"));
   option->type_name("NAME")->capture_default_str();
   if (!group.empty()) option->group(group);
 }

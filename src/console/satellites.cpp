@@ -17,6 +17,14 @@ void use_satellites(std::vector<Satellite> present) { present_satellites() = std
 
 const std::vector<Satellite>& satellites() { return present_satellites(); }
 
+std::string device_help(const std::string& what, const std::string& cards) {
+  if (std::ranges::none_of(satellites(), &Satellite::has_kernels)) {
+    return what + ": cpu; this build has no kernels for cards (docs/gpu.md)";
+  }
+  return what + ": cpu, " + cards +
+         ", or auto, a card where one works and otherwise the processor. The result is the same";
+}
+
 std::vector<std::string> satellite_names() {
   return {"view", "ros2", "cluster", "synth", "train", "evaluate", "assets", "cuda"};
 }

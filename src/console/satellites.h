@@ -22,6 +22,7 @@ struct Satellite {
   /// printed.
   std::vector<std::pair<std::string, std::string>> (*facts)() = nullptr;
   std::vector<LabellerDevice> devices = {};  ///< that label pixels
+  bool has_kernels = false;                  ///< whether the devices are built in, not only named in errors
 };
 
 /// Says which satellites this build has, before anything asks for them.
@@ -29,6 +30,10 @@ void use_satellites(std::vector<Satellite> present);
 
 /// Returns the satellites of this build.
 const std::vector<Satellite>& satellites();
+
+/// Returns the help of --device, which names cards where this build has kernels for them. `cards`: e.g. "cuda or cuda:N
+/// (a card)".
+std::string device_help(const std::string& what, const std::string& cards);
 
 /// Returns the names of all satellites that a build can have.
 std::vector<std::string> satellite_names();

@@ -75,7 +75,8 @@ void Progress::set(int done, int total) {
   total_ = total;
   if (!line_.due()) return;
   const double rate = done_ / seconds();
-  std::string line = fmt::format("{0} {1}, {2:.1f} {1}/s", done_, unit_, rate);
+  const bool one = done_ == 1 && unit_ == "frames";
+  std::string line = fmt::format("{} {}, {:.1f} {}/s", done_, one ? "frame" : unit_, rate, unit_);
   if (total_ >= 0 && rate > 0.0) {
     line = fmt::format("{0} of {1} {2}, {3:.1f} {2}/s, {4:.0f} s left", done_, total_, unit_, rate,
                        (total_ - done_) / rate);

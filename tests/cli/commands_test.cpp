@@ -42,6 +42,14 @@ TEST_F(Commands, AllHaveHelp) {
   }
 }
 
+TEST_F(Commands, HelpNamesCardsOnlyWhereThereAreKernels) {
+  const json parts = json::parse(run_program("info --json").out).at("parts_of_this_build");
+  const bool kernels = parts.at("cuda").at("kernels") == "present";
+  const std::string help = run_program("detect --help").out;
+  EXPECT_EQ(help.find("cuda:N (a card)") != help.npos, kernels);
+  EXPECT_EQ(help.find("this build has no kernels for cards") != help.npos, !kernels);
+}
+
 TEST_F(Commands, InfoDescribesTheBuild) {
   const Outcome run = run_program("info --json");
   ASSERT_EQ(run.exit_code, 0);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 #include "vesalius/track_people.h"
@@ -77,7 +78,7 @@ class SetEvaluation {
       parallel_for(int(items.size()), [&](int i) { score(items[i]); });
       for (Item& item : items) take(std::move(item));
       if (hooks_.stop && hooks_.stop())
-        throw Error(fmt::format("{}: interrupted after {} frames", result_.name, index_));
+        throw Error(fmt::format("{}: interrupted after {}", result_.name, counted(index_, "frame")));
     }
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result_.frames == 0) throw Error(fmt::format("{}: no frame that could be evaluated", options_.source));
@@ -306,7 +307,8 @@ class SequencesEvaluation {
     const std::scoped_lock lock(mutex_);
     ++done_;
     if (hooks_.progress) hooks_.progress(done_, -1);
-    if (hooks_.stop && hooks_.stop()) throw Error(fmt::format("{}: interrupted after {} frames", options_.name, done_));
+    if (hooks_.stop && hooks_.stop())
+      throw Error(fmt::format("{}: interrupted after {}", options_.name, counted(done_, "frame")));
   }
 
   /// Threads that pass over the same frames meet the same failures, of which each counts once.

@@ -6,10 +6,12 @@
 #include <array>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "evaluation/evaluation_json.h"
 #include "io/files/atomic_file.h"
+#include "io/files/plain_text.h"
 #include "report/document.h"
 #include "vesalius/draw.h"
 #include "vesalius/image_file.h"
@@ -186,7 +188,7 @@ ColourImage picture_of(const WorstFrame& worst, const BodyModel& body) {
 
 void add_set(const SetResult& set, const Evaluation& evaluation, Document& document) {
   document.heading(2, set.name);
-  document.paragraph(fmt::format("{} frames of {}{}, {}.", set.frames, set.source,
+  document.paragraph(fmt::format("{} of {}{}, {}.", counted(set.frames, "frame"), set.source,
                                  set.failed > 0 ? fmt::format(" ({} more failed)", set.failed) : "", speed_text(set)));
   for (const std::string& note : set.notes) document.paragraph("Note: " + note);
   for (const std::string& failure : set.failures) document.paragraph("Failed: " + failure);
@@ -220,21 +222,39 @@ Document make_document(const Evaluation& evaluation) {
   return document;
 }
 
-/// Returns e.g. ", people 56 of 56, false 0".
-std::string people_text(const SetResult& set, const std::vector<Estimate>& estimates) {
-  std::string text;
-  if (const Estimate* found = find_estimate(estimates, Metric::people_found)) {
-    text += fmt::format(", people {:.0f} of {:.0f}", found->numerator, found->denominator);
+/// One line of a summary: a word, and after it phrases about the metrics that the set has.
+class SummaryLine {
+ public:
+  SummaryLine(const std::vector<Estimate>& estimates, std::string_view word) : estimates_(estimates), word_(word) {}
+
+  /// Adds what `phrase`, a format of one text, says of a metric; the first of a line with its interval.
+  SummaryLine& add(Metric metric, fmt::format_string<std::string> phrase) {
+    if (const Estimate* estimate = find_estimate(estimates_, metric)) {
+      add(fmt::format(phrase, has_interval_ ? metric_text(metric, estimate->value) : text_with_interval(*estimate)));
+      has_interval_ = true;
+    }
+    return *this;
   }
-  if (const Estimate* wrong = find_estimate(estimates, Metric::people_false)) {
-    text += fmt::format(", false {:.0f}", wrong->numerator);
+
+  /// Adds what `phrase`, a format of two numbers, says of the counts of a metric.
+  SummaryLine& add_counts(Metric metric, fmt::format_string<const double&, const double&> phrase) {
+    if (const Estimate* estimate = find_estimate(estimates_, metric)) {
+      add(fmt::format(phrase, estimate->numerator, estimate->denominator));
+    }
+    return *this;
   }
-  if (const Estimate* empty = find_estimate(estimates, Metric::empty_with_person)) {
-    text += fmt::format(", somebody in {:.0f} of {:.0f} empty", empty->numerator, empty->denominator);
-  }
-  if (set.failed > 0) text += fmt::format(", {} failed", set.failed);
-  return text;
-}
+
+  /// Returns the line, or nothing if the set has none of the metrics.
+  std::string text() const { return text_.empty() ? "" : fmt::format("  {:<9} {}\n", word_, text_); }
+
+ private:
+  void add(const std::string& phrase) { text_ += (text_.empty() ? "" : ", ") + phrase; }
+
+  const std::vector<Estimate>& estimates_;
+  std::string_view word_;
+  std::string text_;
+  bool has_interval_ = false;
+};
 
 }  // namespace
 
@@ -251,14 +271,32 @@ std::string speed_text(const SetResult& set) {
 
 std::string summary_lines(const SetResult& set) {
   const std::vector<Estimate> estimates = set.metrics.estimates();
-  std::string text =
-      fmt::format("{}: {} frames{}, {}\n", set.name, set.frames, people_text(set, estimates), speed_text(set));
-  for (const Metric metric : kOverview) {
-    const Estimate* estimate = find_estimate(estimates, metric);
-    if (estimate == nullptr || metric <= Metric::empty_with_person) continue;
-    text += fmt::format("  {:<24} {}\n", info(metric).title, text_with_interval(*estimate));
-  }
-  return text;
+  const auto line = [&](std::string_view word) { return SummaryLine(estimates, word); };
+  using M = Metric;
+  return fmt::format("{}: {}{}, {}\n", set.name, counted(set.frames, "frame"),
+                     set.failed > 0 ? fmt::format(", {} failed", set.failed) : "", speed_text(set)) +
+         line("found").add_counts(M::people_found, "{:.0f} of {:.0f} people").add(M::people_found, "{}").text() +
+         line("false").add_counts(M::people_false, "{:.0f}").add(M::people_false, "{}").text() +
+         line("empty").add_counts(M::empty_with_person, "somebody in {:.0f} of {:.0f} frames without people").text() +
+         line("masks").add(M::mask_iou_where_found, "{} overlap with the true ones (IoU)").text() +
+         line("parts")
+             .add(M::given_right, "{} of those given out are right")
+             .add(M::sides_swapped, "left and right swapped on {} of people")
+             .text() +
+         line("heading").add(M::yaw_right, "{} within 45 degrees").text() +
+         line("joints").add(M::joints_at_10cm, "{} within 10 cm").add(M::joints_error, "{} off on average").text() +
+         line("labels")
+             .add(M::pixel_person_iou, "{} overlap with people (IoU)")
+             .add(M::pixel_mean_recall, "{} of a part's pixels right")
+             .add(M::body_on_empty, "{} of empty frames taken for people")
+             .text() +
+         line("ids")
+             .add(M::track_idf1, "IDF1 {}")
+             .add(M::track_hota, "HOTA {}")
+             .add(M::track_mota, "MOTA {}")
+             .add(M::track_ids, "ids {}")
+             .text() +
+         line("postures").add(M::stance_right, "{} right").text();
 }
 
 }  // namespace vesalius

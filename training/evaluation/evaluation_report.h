@@ -12,7 +12,7 @@ namespace vesalius {
 /// cannot be written.
 void write_report(const Evaluation& evaluation, const std::string& folder);
 
-/// The metrics that a terminal shows, and a report at its top, of the sets that have them.
+/// The metrics that a report shows at its top, of the sets that have them.
 inline constexpr std::array kOverview{Metric::people_found,
                                       Metric::people_false,
                                       Metric::empty_with_person,
@@ -41,7 +41,8 @@ static_assert(std::ranges::is_sorted(kOverview));
 /// Returns "12.3 frames/s".
 std::string speed_text(const SetResult& set);
 
-/// Returns a summary of a set for a terminal: a line of people, and one for each of kOverview besides.
+/// Returns a summary of a set for a terminal, of at most ten lines: what was measured of people, masks, parts, joints,
+/// labels and ids, in words. All metrics are in the report.
 std::string summary_lines(const SetResult& set);
 
 }  // namespace vesalius

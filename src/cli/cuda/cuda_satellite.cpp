@@ -34,7 +34,11 @@ std::vector<std::pair<std::string, std::string>> facts() {
 }  // namespace
 
 Satellite cuda_satellite() {
-  return {.name = "cuda", .commands = {}, .facts = facts, .devices = {gpu::cuda_labeller()}};
+  return {.name = "cuda",
+          .commands = {},
+          .facts = facts,
+          .devices = {gpu::cuda_labeller()},
+          .has_kernels = gpu::has_cuda()};
 }
 
 }  // namespace vesalius::cli

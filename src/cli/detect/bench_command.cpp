@@ -19,6 +19,7 @@
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "io/files/plain_text.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
@@ -132,7 +133,7 @@ void measure_all(const BenchArguments& arguments, const Detector& detector, Benc
   progress.clear();
   // What was measured of a camera until then is as good as more of it.
   if (interrupted() && !(live && progress.done() > 0))
-    throw Error(fmt::format("interrupted after {} frames", progress.done()));
+    throw Error("interrupted after " + counted(progress.done(), "frame"));
   if (progress.done() == 0) throw Error(arguments.source + ": no frames to measure");
 }
 
@@ -151,8 +152,9 @@ void report(const BenchArguments& arguments, const Bench& bench) {
   const double memory = peak_memory_mb();
   const std::size_t frames = bench.runs.front().times.frames();
   Json runs = Json::array();
-  std::string text = fmt::format("{}\n{} frames of {}x{}; ready after {:.2f} s, at most {:.0f} MB\n", machine_facts(),
-                                 frames, bench.width, bench.height, bench.ready_s, memory);
+  std::string text =
+      fmt::format("{}\n{} of {}x{}; ready after {:.2f} s, at most {:.0f} MB\n", machine_facts(),
+                  counted(std::int64_t(frames), "frame"), bench.width, bench.height, bench.ready_s, memory);
   for (const Run& run : bench.runs) {
     runs.push_back(run_json(run));
     text += fmt::format("\n{} thread{}: {:.1f} frames/s, {:.1f} ms of processor time a frame\n{}", run.threads,

@@ -16,6 +16,7 @@
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "io/files/plain_text.h"
 #include "stream/turn_hint.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/detect_stream.h"
@@ -118,8 +119,8 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
   totals.dropped += source.missed();
   progress.clear();
   // Whoever watches a camera ends it so.
-  if (interrupted() && !source.is_live()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
-  if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
+  if (interrupted() && !source.is_live()) throw Error("interrupted after " + counted(progress.done(), "frame"));
+  if (totals.failed > 0) throw Error(fmt::format("{} of {} failed", totals.failed, counted(progress.done(), "frame")));
 }
 
 void say_totals(const DetectArguments& arguments, const Totals& totals, const Progress& progress) {

@@ -10,6 +10,7 @@
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "io/files/plain_text.h"
 #include "io/recordings/frame_recorder.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/detect_stream.h"
@@ -98,7 +99,7 @@ void run_record(const RecordArguments& arguments) {
     throw Error(fmt::format("interrupted; the {} frames before it are in {}", progress.done(), arguments.out));
   }
   if (!arguments.quiet) {
-    say(fmt::format("{}: {} frames{}", arguments.out, progress.done(),
+    say(fmt::format("{}: {}{}", arguments.out, counted(progress.done(), "frame"),
                     missed > 0 ? fmt::format(", {} missed", missed) : ""));
   }
 }

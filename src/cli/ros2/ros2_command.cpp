@@ -13,6 +13,7 @@
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "io/files/plain_text.h"
 #include "io/sensors/live_source.h"
 #include "io/sources/source_around.h"
 #include "ros2/dds/node_sink.h"
@@ -167,9 +168,9 @@ void run_ros2(const Ros2Arguments& arguments) {
   progress.clear();
   late.print(progress);
   missed += source->missed();
-  if (interrupted() && !source->is_live()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  if (interrupted() && !source->is_live()) throw Error("interrupted after " + counted(progress.done(), "frame"));
   if (!arguments.quiet) {
-    say(fmt::format("{} frames{}", progress.done(), missed > 0 ? fmt::format(", {} dropped", missed) : ""));
+    say(fmt::format("{}{}", counted(progress.done(), "frame"), missed > 0 ? fmt::format(", {} dropped", missed) : ""));
   }
 }
 

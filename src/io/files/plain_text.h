@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,13 @@ inline std::string letters_and_digits(std::string_view text) {
   std::string all = lower(text);
   std::erase_if(all, [](unsigned char c) { return std::isalnum(c) == 0; });
   return all;
+}
+
+/// Returns a number with its noun: "1 frame", "2 frames". `plural` is the noun with an s where it is not given.
+inline std::string counted(std::int64_t count, std::string_view noun, std::string_view plural = "") {
+  std::string text = std::to_string(count) + ' ';
+  if (count == 1) return text.append(noun);
+  return plural.empty() ? text.append(noun) + 's' : text.append(plural);
 }
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }

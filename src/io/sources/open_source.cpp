@@ -58,7 +58,8 @@ bool is_folder(const std::string& path, const char* expected) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
     const std::string why = error ? error.message() : "no such file or folder";
-    throw Error(fmt::format("{}: {}, expected {}{}", path, why, expected, cameras_meant(path)));
+    const std::string_view name = std::string_view(path).substr(0, path.find_last_not_of(':') + 1);
+    throw Error(fmt::format("{}: {}, expected {}{}", name, why, expected, cameras_meant(path)));
   }
   return fs::is_directory(status);
 }

@@ -10,6 +10,7 @@
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "downloads/assets.h"
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 
 namespace vesalius::cli {
@@ -29,12 +30,14 @@ std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.1f} MB", dou
 
 void print_list(const std::string& folder) {
   for (const AssetPackage& package : asset_packages()) {
-    print(fmt::format("{}: {} files, {}, {}\n", package.name, package.files.size(), megabytes(package.bytes()),
+    print(fmt::format("{}: {}, {}, {}\n", package.name, counted(std::ssize(package.files), "file"),
+                      megabytes(package.bytes()),
                       has_assets(package, folder) ? "in " + folder + "/" + package.name : "not fetched"));
     print(fmt::format("  licence: {}\n  credit: {}\n  see: {}\n", package.licence, package.credit, package.page));
     for (const AssetSource& source : package.sources) {
-      print(fmt::format("  made of {} files, {}, of {}\n    licence: {}\n    credit: {}\n", source.originals.size(),
-                        megabytes(source.bytes()), source.home, source.licence, source.credit));
+      print(fmt::format("  made of {}, {}, of {}\n    licence: {}\n    credit: {}\n",
+                        counted(std::ssize(source.originals), "file"), megabytes(source.bytes()), source.home,
+                        source.licence, source.credit));
     }
   }
 }
@@ -48,7 +51,8 @@ void install(const AssetPackage& package, const std::string& folder, const Argum
   const InstallReport report = install_assets(package, folder, arguments.mirror, watch);
   progress.clear();
   if (arguments.quiet) return;
-  say(fmt::format("{}/{}: {} files fetched, {} were there", folder, package.name, report.fetched, report.kept));
+  say(fmt::format("{}/{}: {} fetched, {} were there", folder, package.name, counted(report.fetched, "file"),
+                  report.kept));
   if (report.fetched > 0) say(fmt::format("  licence: {}; credit: {}", package.licence, package.credit));
 }
 

@@ -29,6 +29,7 @@
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_report.h"
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "report/document.h"
 #include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
@@ -226,7 +227,10 @@ void run(const Arguments& arguments, const std::string& command) {
     std::fflush(stdout);  // a set can take minutes
   }
   write_outputs(arguments, evaluation);
-  if (failed > 0) throw Error(fmt::format("{} frames failed", failed));
+  if (!arguments.quiet && arguments.report.empty() && arguments.json.empty()) {
+    say("note: all metrics, plots and the worst frames: --report DIR");
+  }
+  if (failed > 0) throw Error(counted(failed, "frame") + " failed");
 }
 
 std::string comparison_line(const Comparison& c) {

@@ -6,6 +6,7 @@
 #include "console/text_sink.h"
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_frame_codec.h"
+#include "io/files/plain_text.h"
 #include "synth/body/poser.h"
 
 namespace vesalius::cli {
@@ -45,7 +46,7 @@ void write_dataset(const std::string& folder, const FrameMaker& maker, const Dat
   std::uint64_t missing = 0;
   for (const FrameRange& range : ranges) missing += range.count;
   if (missing < info.frames && shown) {
-    say(fmt::format("{}: {} of {} frames are there", folder, info.frames - missing, info.frames));
+    say(fmt::format("{}: {} of {} are there", folder, info.frames - missing, counted(info.frames, "frame")));
   }
   Progress progress(int(missing), shown);
   const int part_count = parse_body_model(info.body_toml, folder).part_count();
@@ -58,7 +59,8 @@ void write_dataset(const std::string& folder, const FrameMaker& maker, const Dat
   }
   progress.clear();
   if (shown && missing > 0) {
-    say(fmt::format("{}: {} frames, {:.1f} frames/s", folder, info.frames, progress.done() / progress.seconds()));
+    say(fmt::format("{}: {}, {:.1f} frames/s", folder, counted(info.frames, "frame"),
+                    progress.done() / progress.seconds()));
   }
 }
 

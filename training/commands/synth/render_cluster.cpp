@@ -19,6 +19,7 @@
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/atomic_file.h"
 #include "io/files/options_file.h"
+#include "io/files/plain_text.h"
 #include "train/messages/training_protocol.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/error.h"
@@ -139,7 +140,7 @@ void render_on_cluster(const RenderRequest& request, const DatasetInfo& info, co
   store.remove(job_folder(kJob));
   std::error_code ignored;  // it may have been the user's
   for (const char* own : {"/jobs", ""}) fs::remove(folder + ".work" + own, ignored);
-  if (shown) say(fmt::format("{}: {} frames", folder, DatasetReader(folder).size()));
+  if (shown) say(folder + ": " + counted(DatasetReader(folder).size(), "frame"));
 }
 
 void add_render_task(CLI::App& synth) {

@@ -18,6 +18,7 @@
 #include "dataset/labelled_folder.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
+#include "io/files/plain_text.h"
 #include "synth/body/poser.h"
 #include "synth/sensor/embree_scene.h"
 #include "train/parallel_in_order.h"
@@ -58,7 +59,7 @@ void write_folder(const Arguments& arguments, const std::string& folder, const F
   make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
   progress.clear();
-  if (!arguments.quiet) say(fmt::format("{}: {} frames", folder, progress.done()));
+  if (!arguments.quiet) say(folder + ": " + counted(progress.done(), "frame"));
 }
 
 /// Writes the same clips as each camera sees them, into camera_0 and so on.
@@ -95,7 +96,7 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
   progress.clear();
   const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;
   write_png(contact_sheet(frames, body, kPreviewColumns), path);
-  if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
+  if (!arguments.quiet) say(path + ": " + counted(std::ssize(frames), "frame"));
 }
 
 void check(const Arguments& arguments) {

@@ -29,6 +29,7 @@
 #include "folders/owned_folder.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
+#include "io/files/plain_text.h"
 #include "io/model/model_contents.h"
 #include "learn/fit_boosted.h"
 #include "learn/fit_vote_judge.h"
@@ -187,7 +188,7 @@ class ModelMaker::Work {
       model.judge = fitted(judge_, model, model.network != nullptr ? fit_vote_judge : fit_judge);
     save_model(model, run_.train.out);
     const std::string labeller =
-        model.network != nullptr ? "a network" : fmt::format("{} trees", model.forest.trees.size());
+        model.network != nullptr ? "a network" : counted(std::ssize(model.forest.trees), "tree");
     tell(fmt::format("{}: {}{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
                      run_.train.out, labeller, model.context.empty() ? "" : ", a context",
                      model.judge.empty() ? "" : ", a judge", double(fs::file_size(run_.train.out)) / 1024.0 / 1024.0,

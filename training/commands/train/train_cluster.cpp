@@ -20,6 +20,7 @@
 #include "folders/owned_folder.h"
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"
 
@@ -154,7 +155,7 @@ class ClusterRun {
     ClusterExecutor::clear(engine);
     session_->remove();
     if (!run_.shown) return;
-    say(fmt::format("{}: {} trees, {:.2f} MiB, trained in {:.1f} s", run_.out, forest.trees.size(),
+    say(fmt::format("{}: {}, {:.2f} MiB, trained in {:.1f} s", run_.out, counted(std::ssize(forest.trees), "tree"),
                     double(fs::file_size(run_.out)) / kMiB,
                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   }
@@ -169,8 +170,8 @@ class ClusterRun {
     if (!run_.shown) return;
     std::int64_t samples = 0;
     for (const std::int64_t of_class : total.samples.samples) samples += of_class;
-    say(fmt::format("{} frames in {} shards, {:.2f} million samples, {:.2f} GiB", total.frames, executor.shards(),
-                    double(samples) * 1e-6, double(total.bytes) / kGiB));
+    say(fmt::format("{} in {}, {:.2f} million samples, {:.2f} GiB", counted(total.frames, "frame"),
+                    counted(executor.shards(), "shard"), double(samples) * 1e-6, double(total.bytes) / kGiB));
   }
 
   const TrainRun& run_;

@@ -190,8 +190,7 @@ void add_run_flags(CLI::App& command, Arguments& arguments) {
       ->group(group);
   command
       .add_option("--device", arguments.device,
-                  "What trains: cpu, cuda or cuda:N (a card), cuda:N,cuda:M (several), or auto, a card where one works "
-                  "and otherwise the processor. The result is the same")
+                  device_help("What trains", "cuda or cuda:N (a card), cuda:N,cuda:M (several)"))
       ->type_name("NAME")
       ->capture_default_str()
       ->group(group);

@@ -20,6 +20,7 @@
 #include "cuda/cuda_device.h"
 #include "cuda_train/device_executor.h"
 #include "cuda_train/train_kernels.h"
+#include "io/files/plain_text.h"
 #include "train/local_executor.h"
 #include "train/messages/training_protocol.h"
 #include "train/samples/training_set.h"
@@ -156,7 +157,7 @@ class Training {
     inputs_.read({}, add);
     figures_.reading_s = progress.seconds();
     progress.clear();
-    tell(fmt::format("{} frames, {:.2f} million samples, {:.1f} s", set_.frames().size(),
+    tell(fmt::format("{}, {:.2f} million samples, {:.1f} s", counted(std::ssize(set_.frames()), "frame"),
                      double(set_.samples().size()) * 1e-6, figures_.reading_s));
   }
 
@@ -217,7 +218,7 @@ class Training {
     figures_.model = run_.out;
     figures_.model_bytes = std::filesystem::file_size(run_.out);
     figures_.threads = thread_count();
-    tell(fmt::format("{}: {} trees, {:.2f} MiB, grown in {:.1f} s", run_.out, forest.trees.size(),
+    tell(fmt::format("{}: {}, {:.2f} MiB, grown in {:.1f} s", run_.out, counted(std::ssize(forest.trees), "tree"),
                      double(figures_.model_bytes) / kMiB, figures_.grown.seconds));
     if (set_.held_out().empty()) return;
     tell(fmt::format("accuracy {:.3f} ({:.3f} among parts) on {} held-out samples", figures_.accuracy.with_background(),
