@@ -15,6 +15,7 @@ import pathlib
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -187,12 +188,13 @@ fi""")
 
 
 def other_build(trainings):
-    """A copy of the program that takes itself for the build of another compiler."""
-    build, other = b"vesalius {} by {}", b"vesalius {} BY {}"
+    """A copy of the program with another build id (a note of ELF)."""
+    note = struct.pack("<3I4s", 4, 20, 3, b"GNU")  # lengths of name and contents, kind, name
     program = trainings.work / "other_build"
-    code = pathlib.Path(trainings.program).read_bytes()
-    expect(code.count(build) == 1, f"{trainings.program}: expected one '{build.decode()}'")
-    program.write_bytes(code.replace(build, other))
+    code = bytearray(pathlib.Path(trainings.program).read_bytes())
+    expect(code.count(note) == 1, f"{trainings.program}: expected one build id")
+    code[code.index(note) + len(note)] ^= 1
+    program.write_bytes(code)
     program.chmod(0o755)
     return str(program)
 
