@@ -54,7 +54,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.i
                               ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake INSTALL_DESTINATION ${VESALIUS_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindAGG.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake ${PROJECT_SOURCE_DIR}/cmake/FindFreenect.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindAvformat.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSpng.cmake

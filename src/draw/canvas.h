@@ -1,6 +1,6 @@
 #pragma once
 
-#include <opencv2/core.hpp>
+#include <Eigen/Core>
 #include <string>
 
 #include "vesalius/image.h"
@@ -23,15 +23,21 @@ Image<T> enlarge(const Image<T>& image, int scale) {
 /// Returns the colour of `over` drawn on `under` with the opacity `weight`, 0-1.
 Rgb mix(Rgb under, Rgb over, float weight);
 
-/// Returns the picture's own pixels for OpenCV, in RGB order. They are valid as long as `image` lives.
-cv::Mat view(ColourImage& image);
-cv::Scalar scalar(Rgb colour);
+// Shapes have soft edges but for rectangles, and what is outside the picture is cut off. Places are in pixels, whole
+// numbers in the middle of a pixel.
+
+void fill_rectangle(ColourImage& image, const Box& box, Rgb colour);
+/// A line with round ends.
+void draw_line(ColourImage& image, const Eigen::Vector2f& from, const Eigen::Vector2f& to, float width, Rgb colour);
+void draw_disc(ColourImage& image, const Eigen::Vector2f& centre, float radius, Rgb colour);
+/// `radius` is that of the middle of the ring's line.
+void draw_ring(ColourImage& image, const Eigen::Vector2f& centre, float radius, float width, Rgb colour);
 
 /// Height of a line of text with its background plate, in pixels.
 inline constexpr int kTextRow = 17;
 int text_width(const std::string& text);
 
-/// Draws one line of text (ASCII) with its lower left corner at pixel (u, v). Parts outside the picture are cut off.
+/// Draws one line of text (ASCII) with its lower left corner at pixel (u, v).
 void draw_text(ColourImage& image, const std::string& text, int u, int v, Rgb colour);
 
 /// Draws text on a background of colour `plate`, in black or white, whichever is more legible. Both are moved into the

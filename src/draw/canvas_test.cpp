@@ -39,10 +39,55 @@ TEST(Mix, BlendsFromUnderToOver) {
   EXPECT_EQ(mix(under, over, 0.25F), (Rgb{50, 100, 150}));
 }
 
-TEST(View, KeepsChannelOrder) {
-  ColourImage image(3, 2);
-  view(image).at<cv::Vec3b>(1, 2) = {1, 2, 3};
-  EXPECT_EQ(image(2, 1), (Rgb{1, 2, 3}));
+TEST(FillRectangle, IsCutOffAtTheBorder) {
+  ColourImage image(5, 4);
+  fill_rectangle(image, {-2, 1, 4, 9}, {1, 2, 3});
+  for (int v = 0; v < 4; ++v)
+    for (int u = 0; u < 5; ++u) EXPECT_EQ(image(u, v), u < 2 && v >= 1 ? (Rgb{1, 2, 3}) : (Rgb{})) << u << " " << v;
+  fill_rectangle(image, {9, 9, 2, 2}, {4, 5, 6});
+  fill_rectangle(image, {-9, 0, 2, 2}, {4, 5, 6});
+  EXPECT_FALSE(has(image, {4, 5, 6}));
+}
+
+/// Returns how much of a black picture is covered, in pixels, by white.
+double covered(const ColourImage& image) {
+  double sum = 0.0;
+  for (const Rgb pixel : image) sum += pixel.g / 255.0;
+  return sum;
+}
+
+TEST(Shapes, CoverTheirAreas) {
+  const Rgb white{255, 255, 255};
+  ColourImage image(100, 80);
+  draw_disc(image, {40.3F, 35.8F}, 10.F, white);
+  EXPECT_NEAR(covered(image), 3.1416 * 100.0, 3.0);
+  image = ColourImage(100, 80);
+  draw_ring(image, {40.3F, 35.8F}, 10.F, 2.F, white);
+  EXPECT_NEAR(covered(image), 2.0 * 3.1416 * 10.0 * 2.0, 2.0);
+  image = ColourImage(100, 80);
+  draw_line(image, {20.F, 20.F}, {60.F, 50.F}, 4.F, white);
+  EXPECT_NEAR(covered(image), 50.0 * 4.0 + 3.1416 * 4.0, 2.0);
+}
+
+TEST(Shapes, LieAboutMiddlesOfPixels) {
+  ColourImage image(21, 21);
+  draw_disc(image, {10.F, 10.F}, 4.F, {255, 100, 50});
+  EXPECT_EQ(image(10, 10), (Rgb{255, 100, 50}));
+  for (int v = 0; v < 21; ++v)
+    for (int u = 0; u < 21; ++u) EXPECT_NEAR(image(u, v).r, image(20 - u, 20 - v).r, 2) << u << " " << v;
+  ColourImage line(9, 9);
+  draw_line(line, {-5.F, 4.F}, {20.F, 4.F}, 1.F, {255, 255, 255});
+  for (int u = 0; u < 9; ++u) EXPECT_EQ(line(u, 4), (Rgb{255, 255, 255}));
+  EXPECT_NEAR(covered(line), 9.0, 0.1);
+}
+
+TEST(Shapes, AreCutOffOutside) {
+  ColourImage image(12, 8);
+  draw_disc(image, {-900.F, 4.F}, 20.F, {255, 255, 255});
+  draw_text(image, "far away", 3000, -50, {255, 255, 255});
+  EXPECT_EQ(covered(image), 0.0);
+  draw_line(image, {-3000.F, -3000.F}, {3000.F, 3000.F}, 3.F, {255, 255, 255});
+  EXPECT_EQ(image(3, 3), (Rgb{255, 255, 255}));
 }
 
 TEST(DrawTag, StaysInsideThePicture) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,8 +13,6 @@
 
 namespace vesalius {
 namespace {
-
-constexpr int kSubpixelBits = 4;  // OpenCV draws at 1/16 pixel
 
 // Seven colours that people with colour-blindness can tell apart (Okabe and Ito, 2008).
 constexpr std::array<Rgb, 7> kPersonColours{
@@ -46,17 +43,30 @@ DepthRange depth_range(const DepthImage& depth) {
   return {percentile(1), percentile(99)};
 }
 
-std::array<Rgb, 256> turbo_colours() {
-  cv::Mat ramp(1, 256, CV_8UC1);
-  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
-  cv::Mat bgr;
-  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
-  std::array<Rgb, 256> colours;
-  for (int i = 0; i < 256; ++i) {
-    const auto& c = bgr.at<cv::Vec3b>(0, i);
-    colours[i] = {c[2], c[1], c[0]};
-  }
-  return colours;
+// The colour map Turbo (Mikhailov 2019) at every 17th of its 256 steps; straight lines between these miss it by 7 of
+// 255.
+constexpr std::array<Rgb, 16> kTurbo{{{48, 18, 59},
+                                      {65, 67, 167},
+                                      {71, 113, 233},
+                                      {62, 155, 254},
+                                      {34, 197, 226},
+                                      {26, 228, 182},
+                                      {70, 248, 132},
+                                      {136, 255, 78},
+                                      {185, 246, 53},
+                                      {225, 221, 55},
+                                      {250, 186, 57},
+                                      {253, 141, 39},
+                                      {240, 91, 18},
+                                      {214, 53, 6},
+                                      {175, 24, 1},
+                                      {122, 4, 3}}};
+
+/// Returns Turbo's colour at 0 (blue) to 1 (red).
+Rgb turbo(float at) {
+  const float step = at * float(kTurbo.size() - 1);
+  const auto below = std::min(std::size_t(step), kTurbo.size() - 2);
+  return mix(kTurbo[below], kTurbo[below + 1], step - float(below));
 }
 
 /// Draws depth in grey from near (lighter) to far (darker), dark enough for part colours to stand out. Holes are black.
@@ -86,7 +96,7 @@ ColourImage with_legend(const ColourImage& picture, const BodyModel& body) {
     const BodyPart& part = body.parts[i];
     const int left = picture.width() + i / rows * column_width + kMargin;
     const int top = i % rows * kTextRow;
-    cv::rectangle(view(result), cv::Rect(left, top + 2, kSwatch, kSwatch), scalar(part.colour), cv::FILLED);
+    fill_rectangle(result, {left, top + 2, kSwatch, kSwatch}, part.colour);
     draw_text(result, part.name, left + kSwatch + kMargin, top + kSwatch, {255, 255, 255});
   }
   return result;
@@ -104,53 +114,48 @@ void draw_mask(ColourImage& picture, const Mask& mask, Rgb colour) {
   }
 }
 
-/// Returns the position of a part's centre on the canvas in 1/16 pixel, or nothing if it cannot be drawn.
-std::optional<cv::Point> place_on_canvas(const SkeletonPart& part, const Camera& camera, int scale) {
+/// Returns the position of a part's centre on the canvas in pixels, or nothing if it cannot be drawn.
+std::optional<Eigen::Vector2f> place_on_canvas(const SkeletonPart& part, const Camera& camera, int scale) {
   if (part.state == State::none || !part.centre.allFinite() || part.centre.z() <= 0.F) return std::nullopt;
   const Eigen::Vector2f pixel = camera.pixel(part.centre);
   // Farther outside than the picture's size, no disc or plausible link would show, and integers would overflow.
   const auto near = [](float at, int size) { return at > -float(size) && at < 2.F * float(size); };
   if (!near(pixel.x(), camera.width) || !near(pixel.y(), camera.height)) return std::nullopt;
-  const auto fixed = [scale](float at) {
-    const float on_canvas = (at + 0.5F) * float(scale) - 0.5F;  // pixel centres are at integers
-    return int(std::lround(on_canvas * float(1 << kSubpixelBits)));
-  };
-  return cv::Point(fixed(pixel.x()), fixed(pixel.y()));
+  const Eigen::Vector2f middle(0.5F, 0.5F);  // pixel centres are at integers
+  return (pixel + middle) * float(scale) - middle;
 }
 
 struct Strokes {
-  int thin, thick, radius;
+  float thin, thick, radius;
 
   explicit Strokes(int canvas_width)
-      : thin(std::max(1, canvas_width / 640)),
-        thick(std::max(2, canvas_width / 250)),
-        radius(std::max(3, canvas_width / 110)) {}
+      : thin(std::max(1.5F, float(canvas_width) / 450.F)),
+        thick(std::max(3.F, float(canvas_width) / 210.F)),
+        radius(std::max(3.F, float(canvas_width) / 110.F)) {}
 };
 
 void draw_skeleton(ColourImage& picture, const Skeleton& skeleton, const Camera& camera, const BodyModel& body,
                    int scale) {
   const Strokes strokes(picture.width());
-  std::vector<std::optional<cv::Point>> at;
+  std::vector<std::optional<Eigen::Vector2f>> at;
   for (const SkeletonPart& part : skeleton.parts) at.push_back(place_on_canvas(part, camera, scale));
   const auto seen = [&skeleton](int part) { return skeleton.parts[part].state == State::observed; };
-  cv::Mat canvas = view(picture);
   for (const BodyLink& link : body.links) {
     const auto& from = at[link.parent];
     const auto& to = at[link.child];
     if (!from || !to) continue;
-    const int thickness = seen(link.parent) && seen(link.child) ? strokes.thick : strokes.thin;
-    cv::line(canvas, *from, *to, {255, 255, 255}, thickness, cv::LINE_AA, kSubpixelBits);
+    const float width = seen(link.parent) && seen(link.child) ? strokes.thick : strokes.thin;
+    draw_line(picture, *from, *to, width, {255, 255, 255});
   }
   for (int i = 0; i < body.part_count(); ++i) {
     const auto& centre = at[i];
     if (!centre) continue;
-    const int radius = strokes.radius << kSubpixelBits;
-    const cv::Scalar colour = scalar(body.parts[i].colour);
+    const Rgb colour = body.parts[i].colour;
     if (seen(i)) {
-      cv::circle(canvas, *centre, radius, colour, cv::FILLED, cv::LINE_AA, kSubpixelBits);
-      cv::circle(canvas, *centre, radius, {0, 0, 0}, 1, cv::LINE_AA, kSubpixelBits);
+      draw_disc(picture, *centre, strokes.radius, colour);
+      draw_ring(picture, *centre, strokes.radius, 1.F, {0, 0, 0});
     } else {
-      cv::circle(canvas, *centre, radius, colour, strokes.thin, cv::LINE_AA, kSubpixelBits);
+      draw_ring(picture, *centre, strokes.radius, strokes.thin, colour);
     }
   }
 }
@@ -174,13 +179,12 @@ void check_fits(const Frame& frame, const Person& person, std::size_t index, con
 }  // namespace
 
 ColourImage draw_depth(const DepthImage& depth) {
-  static const std::array<Rgb, 256> colours = turbo_colours();
   const DepthRange range = depth_range(depth);
   ColourImage picture(depth.width(), depth.height());
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (depth[i] == 0) continue;
-    // The two ends of the Turbo colour map are nearly black; the middle nine tenths are not.
-    picture[i] = colours[std::lround(243.F - 230.F * range.place(depth[i]))];
+    // The two ends of Turbo are nearly black; the middle nine tenths are not.
+    picture[i] = turbo(0.95F - 0.9F * range.place(depth[i]));
   }
   return picture;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "console/text_sink.h"
-#include "draw/video.h"
+#include "film/video.h"
 #include "io/net/udp_sender.h"
 #include "stream/osc_messages.h"
 #include "vesalius/detect.h"

@@ -13,6 +13,8 @@ constexpr int kGap = 4;
 constexpr Rgb kPaper{255, 255, 255};
 constexpr Rgb kInk{0, 0, 0};
 
+cv::Mat view(ColourImage& image) { return {image.height(), image.width(), CV_8UC3, image.data()}; }
+
 ColourImage resized(ColourImage image, int width) {
   const int height = std::max(1, image.height() * width / image.width());
   ColourImage result(width, height);

@@ -1,4 +1,4 @@
-#include "draw/video.h"
+#include "film/video.h"
 
 #include <fmt/format.h>
 
