@@ -18,9 +18,21 @@ namespace vesalius {
 /// The camera of the depth picture, in pixels.
 struct PythonCamera {
   float fx, fy, cx, cy;
+
+  explicit PythonCamera(const Camera& camera) : fx(camera.fx), fy(camera.fy), cx(camera.cx), cy(camera.cy) {}
+  PythonCamera(float focal_x, float focal_y, float centre_x, float centre_y)
+      : fx(focal_x), fy(focal_y), cx(centre_x), cy(centre_y) {}
+  /// For pictures of a size.
+  Camera of(int width, int height) const { return {width, height, fx, fy, cx, cy}; }
 };
 
 using AnyArray = nanobind::ndarray<nanobind::ro, nanobind::c_contig, nanobind::device::cpu>;
+
+/// Returns a copy of an array (height, width) of uint16 millimetres or float32 metres. Throws UsageError for another.
+DepthImage depth_image_of(const AnyArray& array);
+
+/// Returns a copy of an array (height, width, 3) of uint8, of this size. Throws UsageError for another.
+ColourImage colour_image_of(const AnyArray& array, int width, int height);
 
 /// Returns a frame with copies of the arrays: depth (height, width) uint16 millimetres or float32 metres, colour
 /// (height, width, 3) uint8. Throws UsageError for another dtype or shape, and for a time that is no number.

@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "arrays.h"
+#include "pictures.h"
+#include "stream/json_numbers.h"
 #include "vesalius/error.h"
 #include "vesalius/open_source.h"
 
@@ -92,6 +94,8 @@ DepthBits depth_bits_named(const std::string& name) {
   throw UsageError("depth_bits is \"" + name + "\", expected \"plain\", \"swapped\" or \"rotated\"");
 }
 
+std::string text_of(float value) { return nb::cast<std::string>(nb::repr(nb::float_(shortest(value)))); }
+
 std::string path_of(const nb::handle& path) {
   return nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(path));
 }
@@ -155,10 +159,7 @@ void bind_frame(nb::module_& m) {
           "time", [](const PythonFrame& f) { return f.frame->time_s; },
           "Seconds since any moment the source counts from; None where it has no times.")
       .def_prop_ro(
-          "camera",
-          [](const PythonFrame& f) {
-            return PythonCamera{f.frame->camera.fx, f.frame->camera.fy, f.frame->camera.cx, f.frame->camera.cy};
-          },
+          "camera", [](const PythonFrame& f) { return PythonCamera(f.frame->camera); },
           "The pinhole camera of the depth picture.")
       .def_prop_ro("depth", &depth_of, nb::rv_policy::automatic,
                    "uint16 (height, width): millimetres, 0 where there is no reading. The frame's own values, no copy.")
@@ -201,6 +202,11 @@ void bind_source(nb::module_& m) {
       "cy"_a = nb::none(), "depth_scale"_a = nb::none(), "camera_file"_a = nb::none(), "colour_file"_a = nb::none(),
       "depth_topic"_a = "", "colour_topic"_a = "", "start"_a = nb::none(), "reconnect"_a = false,
       "depth_bits"_a = "plain", "turn"_a = nb::none(),
+      nb::sig("def open(source: str | os.PathLike[str], *, fx: float | None = None, fy: float | None = None, "
+              "cx: float | None = None, cy: float | None = None, depth_scale: float | None = None, "
+              "camera_file: str | os.PathLike[str] | None = None, colour_file: str | os.PathLike[str] | None = None, "
+              "depth_topic: str = '', colour_topic: str = '', start: float | None = None, reconnect: bool = False, "
+              "depth_bits: str = 'plain', turn: int | None = None) -> Source"),
       "Opens frames: the path of a folder, a picture or a recording, or a camera such as \"realsense:\", as the "
       "program does (docs/recordings.md, docs/cameras.md). fx, fy, cx, cy: pixels; depth_scale: stored units per "
       "metre; camera_file: meta.json or ROS camera_info; colour_file: of a single depth picture; depth_topic, "
@@ -222,7 +228,22 @@ void bind_frames(nb::module_& m) {
       .def_rw("fx", &PythonCamera::fx)
       .def_rw("fy", &PythonCamera::fy)
       .def_rw("cx", &PythonCamera::cx)
-      .def_rw("cy", &PythonCamera::cy);
+      .def_rw("cy", &PythonCamera::cy)
+      .def(
+          "project",
+          [](const PythonCamera& c, nb::handle points) {
+            const nb::module_ numpy = nb::module_::import_("numpy");
+            return project(c.of(0, 0), nb::cast<Places>(numpy.attr("asarray")(points, numpy.attr("float64"))));
+          },
+          "points"_a,
+          nb::sig("def project(self, points: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]"),
+          "float64 (..., 2): columns and rows of the pixels in which the camera sees points (..., 3) in metres, "
+          "optical "
+          "frame; NaN for those that are NaN or not in front of it.")
+      .def("__repr__", [](const PythonCamera& c) {
+        return "<vesalius.Camera fx=" + text_of(c.fx) + ", fy=" + text_of(c.fy) + ", cx=" + text_of(c.cx) +
+               ", cy=" + text_of(c.cy) + ">";
+      });
   bind_frame(m);
   bind_source(m);
 }

@@ -16,6 +16,7 @@
 #include "frames.h"
 #include "options_from_keywords.h"
 #include "people.h"
+#include "plain_calls.h"
 #include "vesalius/body_model.h"
 #include "vesalius/detect.h"
 #include "vesalius/error.h"
@@ -42,11 +43,11 @@ class PythonDetector {
     body_ = std::make_shared<const BodyModel>(detector_->body());
   }
 
-  PythonPeople detect(const Frame& frame) const {
+  PythonPeople detect(const std::shared_ptr<const Frame>& frame) const {
     const nb::gil_scoped_release released;
     const ThreadLimit limit(threads_);
     return {std::make_shared<FoundPeople>(
-        FoundPeople{without_pictures(frame), body_, seen_people(detector_->detect(frame))})};
+        FoundPeople{without_pictures(*frame), body_, seen_people(detector_->detect(*frame)), frame})};
   }
 
   const Detector& detector() const { return *detector_; }
@@ -66,12 +67,12 @@ class PythonTracker {
   explicit PythonTracker(const PythonDetector& detector)
       : detector_(detector), tracker_(make_tracker(detector.detector(), detector.options())) {}
 
-  PythonPeople update(const Frame& frame) {
+  PythonPeople update(const std::shared_ptr<const Frame>& frame) {
     const nb::gil_scoped_release released;
     const std::scoped_lock lock(mutex_);
     const ThreadLimit limit(detector_.threads());
-    return {std::make_shared<FoundPeople>(
-        FoundPeople{without_pictures(frame), detector_.body(), follow(detector_.detector(), tracker_, frame)})};
+    return {std::make_shared<FoundPeople>(FoundPeople{without_pictures(*frame), detector_.body(),
+                                                      follow(detector_.detector(), tracker_, *frame), frame})};
   }
 
  private:
@@ -83,15 +84,18 @@ class PythonTracker {
 void bind_detector(nb::module_& m) {
   nb::class_<PythonDetector>(m, "Detector",
                              "Finds the people in one frame at a time. It may be used from several threads.")
-      .def(nb::init<const std::string&, int, const nb::kwargs&>(), "model"_a, "threads"_a = 0, "options"_a)
+      .def(nb::init<const std::string&, int, const nb::kwargs&>(), "model"_a, "threads"_a = 0, "options"_a,
+           nb::sig("def __init__(self, model: str, threads: int = 0, **options: float | int | bool | str) -> None"))
       .def(
-          "detect", [](const PythonDetector& d, const PythonFrame& frame) { return d.detect(*frame.frame); }, "frame"_a,
+          "detect", [](const PythonDetector& d, const PythonFrame& frame) { return d.detect(frame.frame); }, "frame"_a,
           "Finds the people in a frame, without copying its pictures. Returns People, the most certain first. Raises "
           "Error for a frame or a camera that cannot be.")
       .def(
           "detect",
           [](const PythonDetector& d, const AnyArray& depth, const PythonCamera& camera,
-             const std::optional<AnyArray>& colour) { return d.detect(frame_of(depth, camera, colour, std::nullopt)); },
+             const std::optional<AnyArray>& colour) {
+            return d.detect(std::make_shared<Frame>(frame_of(depth, camera, colour, std::nullopt)));
+          },
           "depth"_a, "camera"_a, "colour"_a = nb::none(),
           "Finds the people in a depth picture: (height, width) uint16 in millimetres or float32 in metres; 0, and of "
           "float32 what is no number, is no reading. colour: (height, width, 3) uint8, registered to depth. Returns "
@@ -99,6 +103,9 @@ void bind_detector(nb::module_& m) {
       .def_prop_ro(
           "parts", [](const PythonDetector& d) { return names_of(d.body()->parts); },
           "Names of the parts, by their numbers in Person.labels.")
+      .def(
+          "options", [](const PythonDetector& d) { return options_as_dict(d.options()); },
+          nb::sig("def options(self) -> dict[str, float | int | bool | str]"), "All options with their values.")
       .def_prop_ro(
           "joint_sets", [](const PythonDetector& d) { return names_of(d.body()->joint_sets); },
           "Names of the joint sets.")
@@ -111,13 +118,15 @@ void bind_detector(nb::module_& m) {
   nb::class_<PythonTracker>(m, "Tracker", "Follows people over the frames of one source: ids that hold, fitted bodies.")
       .def(nb::init<const PythonDetector&>(), "detector"_a, nb::keep_alive<1, 2>())
       .def(
-          "update", [](PythonTracker& t, const PythonFrame& frame) { return t.update(*frame.frame); }, "frame"_a,
+          "update", [](PythonTracker& t, const PythonFrame& frame) { return t.update(frame.frame); }, "frame"_a,
           "Takes the next frame, without copying its pictures. Returns People by their ids; hidden ones are among "
           "them.")
       .def(
           "update",
           [](PythonTracker& t, const AnyArray& depth, const PythonCamera& camera, const std::optional<AnyArray>& colour,
-             std::optional<double> time) { return t.update(frame_of(depth, camera, colour, time)); },
+             std::optional<double> time) {
+            return t.update(std::make_shared<Frame>(frame_of(depth, camera, colour, time)));
+          },
           "depth"_a, "camera"_a, "colour"_a = nb::none(), "time"_a = nb::none(),
           "Takes the next frame, as Detector.detect, at a time in seconds (without times frames are 1/30 s apart). "
           "Returns People by their ids; hidden ones are among them.");
@@ -126,7 +135,7 @@ void bind_detector(nb::module_& m) {
 }  // namespace
 
 NB_MODULE(_vesalius, m) {
-  m.attr("__version__") = VESALIUS_VERSION;
+  m.attr("VERSION") = VESALIUS_VERSION;
   const nb::exception<Error> error(m, "Error", PyExc_RuntimeError);
   nb::register_exception_translator([](const std::exception_ptr& thrown, void* /*unused*/) {
     try {
@@ -135,11 +144,15 @@ NB_MODULE(_vesalius, m) {
       PyErr_SetString(PyExc_ValueError, e.what());
     }
   });
-  m.def("options", &describe_options,
+  m.def(
+      "options", [] { return options_as_dict({}); }, nb::sig("def options() -> dict[str, float | int | bool | str]"),
+      "The options that Detector takes as keywords, with their defaults.");
+  m.def("describe_options", &describe_options,
         "The options that Detector takes as keywords: a line each with default, unit and what it is.");
   bind_frames(m);
   bind_people(m);
   bind_detector(m);
+  bind_plain_calls(m);
 }
 
 }  // namespace vesalius

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "io/files/options_file.h"
 #include "vesalius/error.h"
@@ -51,13 +53,18 @@ class Setter : public OptionVisitor {
 
   void expect_all_taken() const {
     for (const auto& [name, unused] : values_) {
-      if (!taken_.contains(name)) throw UsageError(name + " is no option; vesalius.options() lists them");
+      if (taken_.contains(name)) continue;
+      const std::string nearest = keyword_of(nearest_name(name, known_));
+      throw UsageError(name + " is no option" +
+                       (nearest.empty() ? "; vesalius.options() lists them" : "; did you mean " + nearest + "?"));
     }
   }
 
  private:
   template <class Set>
   void take(const std::string& name, const char* expected, const Set& set) {
+    known_.push_back(name);
+    std::ranges::replace(known_.back(), '-', '_');
     const auto found = values_.find(keyword_of(name));
     if (found == values_.end()) return;
     taken_.insert(found->first);
@@ -69,8 +76,22 @@ class Setter : public OptionVisitor {
   }
 
   std::map<std::string, nb::handle> values_;
+  std::vector<std::string> known_;  ///< keywords, a dot behind the stage, which may be left out by mistake
   std::set<std::string> taken_;
 };
+
+nb::object value_of(const OptionText& option) {
+  switch (option.kind) {
+    case OptionKind::number:
+      return nb::float_(std::stod(option.value));
+    case OptionKind::whole_number:
+      return nb::int_(std::stoi(option.value));
+    case OptionKind::truth:
+      return nb::bool_(option.value == "true");
+    default:
+      return nb::str(option.value.c_str());
+  }
+}
 
 /// Returns a value as Python writes it.
 std::string as_python(const OptionText& option) {
@@ -92,6 +113,14 @@ void set_options(PeopleOptions& options, const nb::dict& keywords) {
   setter.expect_all_taken();
   RangeCheck check;
   visit_options("", options, check);
+}
+
+nb::dict options_as_dict(PeopleOptions options) {
+  nb::dict values;
+  for (const OptionText& option : list_options([&](OptionVisitor& visitor) { visit_options("", options, visitor); })) {
+    values[keyword_of(option.name).c_str()] = value_of(option);
+  }
+  return values;
 }
 
 std::string describe_options() {

@@ -12,6 +12,9 @@ namespace vesalius {
 /// no option, a value of another type, or one out of range.
 void set_options(PeopleOptions& options, const nanobind::dict& keywords);
 
+/// Returns the values of all options by their keywords.
+nanobind::dict options_as_dict(PeopleOptions options);
+
 /// Returns a line for each option: its keyword, default, unit and what it is.
 std::string describe_options();
 

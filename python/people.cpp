@@ -18,10 +18,13 @@
 #include <utility>
 
 #include "arrays.h"
+#include "pictures.h"
 #include "stream/person_fields.h"
 #include "vesalius/body_model.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/image_file.h"
 #include "vesalius/person_json.h"
 
 namespace nb = nanobind;
@@ -46,6 +49,32 @@ struct PythonPerson {
   const std::vector<SkeletonPart>& parts() const { return person().skeleton.parts; }
   const std::vector<Joint>& joints(const std::string& set) const {
     return person().joints[find_joint_set(*of->body, set)];
+  }
+  const std::vector<Joint>& smoothed(const std::string& set) const {
+    const int index = find_joint_set(*of->body, set);
+    if (!is_followed()) throw UsageError("smoothed: a Detector sees one frame alone; the people of a Tracker have it");
+    return tracked().smoothed.empty() ? person().joints[index] : tracked().smoothed[index];
+  }
+};
+
+/// Something that happened, with the words for it.
+struct PythonEvent {
+  StanceEvent event;
+
+  const char* what() const {
+    const bool known = event.before != Stance::unknown;
+    switch (event.stance) {
+      case Stance::standing:
+        return known ? "stood up" : "stands";
+      case Stance::sitting:
+        return !known ? "sits" : event.before == Stance::standing ? "sat down" : "sat up";
+      case Stance::lying:
+        return known ? "lay down" : "lies";
+      case Stance::fallen:
+        return "fell";
+      default:
+        return "is no longer known";
+    }
   }
 };
 
@@ -150,6 +179,28 @@ std::vector<std::optional<int>> hiders(const std::vector<Point>& points) {
   return people;
 }
 
+/// Returns what a function of vesalius/_show.py makes of an object.
+template <class... More>
+std::string shown(const char* function, nb::handle object, const More&... more) {
+  return nb::cast<std::string>(nb::module_::import_("vesalius._show").attr(function)(object, more...));
+}
+
+/// Returns a JPEG of people over the frame in which they were found, or over black where nobody has it any more.
+nb::bytes picture_of(const PythonPeople& p) {
+  constexpr int kQuality = 85;
+  const std::shared_ptr<const Frame> seen = p.of->seen.lock();
+  Frame black = p.of->frame;
+  black.depth = DepthImage(black.camera.width, black.camera.height);
+  const std::string jpeg = encode_jpeg(drawn(*p.of, seen ? *seen : black), kQuality);
+  return nb::bytes(jpeg.data(), jpeg.size());
+}
+
+nb::ndarray<nb::numpy, std::uint8_t> as_array(const ColourImage& image) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(image.data());
+  return array_of(std::vector<std::uint8_t>(bytes, bytes + 3 * image.size()),
+                  {static_cast<std::size_t>(image.height()), static_cast<std::size_t>(image.width()), 3});
+}
+
 /// Returns the places of so many points of everybody.
 template <class PointsOf>
 Floats places_of_all(const PythonPeople& p, std::size_t count, const PointsOf& points_of) {
@@ -234,6 +285,30 @@ void bind_points(nb::class_<PythonPerson>& person) {
   person.def(
       "behind", [](One p, Set set) { return hiders(p.joints(set)); }, "set"_a = "k4abt32",
       "For each joint who hides it, as part_behind.");
+  person.def(
+      "smoothed", [](One p, Set set) { return places(p.smoothed(set)); }, "set"_a = "k4abt32",
+      "float32 (joints, 3): as joints, smoothed over time, of whom a Tracker follows. Raises ValueError for others.");
+  person.def(
+      "pixels",
+      [](One p, Set set) { return project(p.of->frame.camera, nb::cast<Places>(nb::cast(places(p.joints(set))))); },
+      "set"_a = "k4abt32",
+      "float64 (joints, 2): columns and rows of the joints in the picture, also outside of it; NaN where unknown or "
+      "not "
+      "in front of the camera.");
+  person.def(
+      "points",
+      [](One p, const PythonFrame& frame) {
+        return points_of(p.of->frame.camera, frame.frame->depth, p.person().mask);
+      },
+      "frame"_a,
+      "float32 (points, 3): what the camera sees of the person, metres, optical frame: the pixels of the mask with "
+      "readings, row by row. frame: the one in which the person was found.");
+  person.def(
+      "points",
+      [](One p, const AnyArray& depth) {
+        return points_of(p.of->frame.camera, depth_image_of(depth), p.person().mask);
+      },
+      "depth"_a, "The same of a depth picture that is an array.");
   person.def_prop_ro("bones", &bones, "The bones of the fitted body, parents first; empty without one.");
   person.def(
       "rotations", &rotations, "set"_a = "k4abt32",
@@ -247,20 +322,98 @@ void bind_person(nb::module_& m) {
   bind_fields<Person>(person, std::mem_fn(&PythonPerson::person));
   bind_fields<FittedBody>(person, std::mem_fn(&PythonPerson::body), std::mem_fn(&PythonPerson::has_body));
   bind_points(person);
-  person.def("__repr__", [](const PythonPerson& p) {
-    const TrackedPerson& tracked = p.tracked();
-    return "<vesalius.Person" + (p.is_followed() ? " " + std::to_string(tracked.id) : "") + " " +
-           to_string(tracked.state) + ", score " + std::to_string(p.person().score) + ">";
-  });
+  person.def("__repr__", [](nb::handle self) { return shown("person_text", self); });
+}
+
+void bind_floor(nb::module_& m) {
+  nb::class_<FloorView>(m, "Floor", "The floor and how the camera stands over it.")
+      .def_prop_ro(
+          "up", [](const FloorView& f) { return array_of(std::vector<float>(f.up.begin(), f.up.end()), {3}); },
+          nb::rv_policy::automatic,
+          "float32 (3,): unit vector away from the ground, optical frame. Points are joints @ up + height over it.")
+      .def_ro("height", &FloorView::height_m, "Metres from the floor to the camera.")
+      .def_ro("tilt", &FloorView::tilt_rad, "Radians by which the camera looks below the horizon; negative looks up.")
+      .def_ro("roll", &FloorView::roll_rad, "Radians by which it is turned, clockwise as seen from it.")
+      .def("__repr__", [](nb::handle self) { return shown("floor_text", self); });
+}
+
+void bind_event(nb::module_& m) {
+  nb::class_<PythonEvent>(m, "Event", "Somebody holds the body in another way than before.")
+      .def_prop_ro(
+          "id", [](const PythonEvent& e) { return e.event.id; }, "Whose.")
+      .def_prop_ro(
+          "time", [](const PythonEvent& e) { return e.event.time_s; },
+          "Seconds, when it began: earlier than the frame that tells it.")
+      .def_prop_ro(
+          "stance", [](const PythonEvent& e) { return std::string(to_string(e.event.stance)); },
+          "standing, sitting, lying, fallen, or unknown.")
+      .def_prop_ro(
+          "before", [](const PythonEvent& e) { return std::string(to_string(e.event.before)); },
+          "The stance until then.")
+      .def_prop_ro("what", &PythonEvent::what,
+                   "stood up, sat down, sat up, lay down or fell; stands, sits or lies where nothing was known before.")
+      .def("__repr__", [](nb::handle self) { return shown("event_text", self); });
 }
 
 }  // namespace
 
+void bind_frame_facts(nb::class_<PythonPeople>& people) {
+  using All = const PythonPeople&;
+  people
+      .def_prop_ro(
+          "frame", [](All p) { return p.of->frame.name; }, "Name of the frame in which they were found.")
+      .def_prop_ro(
+          "time", [](All p) { return p.of->people.followed ? p.of->people.time_s : p.of->frame.time_s; },
+          "Its time, seconds, as a Tracker counts; None from a Detector where the frame has none.")
+      .def_prop_ro(
+          "camera", [](All p) { return PythonCamera(p.of->frame.camera); }, "Its camera.")
+      .def_prop_ro(
+          "floor", [](All p) { return p.of->people.floor; },
+          "The floor; None where it is not seen, or from a Detector.")
+      .def_prop_ro(
+          "events",
+          [](All p) {
+            std::vector<PythonEvent> events;
+            for (const StanceEvent& event : p.of->people.events) events.push_back({event});
+            return events;
+          },
+          "What this frame tells of people who stood up, sat down, lay down or fell, by their ids; none from a "
+          "Detector.");
+}
+
+void bind_drawing(nb::class_<PythonPeople>& people) {
+  using All = const PythonPeople&;
+  people
+      .def(
+          "draw", [](All p, const PythonFrame& frame) { return as_array(drawn(*p.of, *frame.frame)); }, "frame"_a,
+          "uint8 (height, width, 3): a copy of the frame's colour, or of its depth in colours, with masks, skeletons, "
+          "numbers and scores drawn on it. Twice as wide and high where it is narrower than 480 pixels.")
+      .def(
+          "draw", [](All p, const AnyArray& picture) { return as_array(drawn(*p.of, picture)); }, "picture"_a,
+          "The same on an array: colour (height, width, 3) uint8, or depth. Raises ValueError where it is not of the "
+          "frame's size.")
+      .def("__repr__", [](nb::handle self) { return shown("people_text", self); })
+      .def("_repr_html_",
+           [](nb::handle self) { return shown("people_html", self, picture_of(nb::cast<const PythonPeople&>(self))); });
+}
+
 void bind_people(nb::module_& m) {
   bind_bone(m);
   bind_person(m);
-  nb::class_<PythonPeople>(m, "People", "The people of a frame: a sequence, and arrays over all of them.")
-      .def("__len__", [](const PythonPeople& p) { return p.of->size(); })
+  bind_floor(m);
+  bind_event(m);
+  nb::class_<PythonPeople> people(m, "People", "The people of a frame: a sequence, and arrays over all of them.");
+  bind_frame_facts(people);
+  bind_drawing(people);
+  people.def("__len__", [](const PythonPeople& p) { return p.of->size(); })
+      .def(
+          "__iter__",
+          [](const PythonPeople& p) {
+            nb::list all;
+            for (std::size_t i = 0; i < p.of->size(); ++i) all.append(PythonPerson{p.of, i});
+            return nb::iter(all);
+          },
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[Person]"))
       .def("__getitem__",
            [](const PythonPeople& p, std::ptrdiff_t i) {
              const auto count = static_cast<std::ptrdiff_t>(p.of->size());
@@ -275,6 +428,24 @@ void bind_people(nb::module_& m) {
             return places_of_all(p, count, [&](const PythonPerson& one) { return one.joints(set); });
           },
           "set"_a = "k4abt32", "float32 (people, joints, 3): metres, optical frame; NaN where unknown.")
+      .def(
+          "smoothed",
+          [](const PythonPeople& p, const std::string& set) {
+            const std::size_t count = p.of->body->joint_sets[find_joint_set(*p.of->body, set)].joints.size();
+            return places_of_all(p, count, [&](const PythonPerson& one) { return one.smoothed(set); });
+          },
+          "set"_a = "k4abt32",
+          "float32 (people, joints, 3): joints smoothed over time, from a Tracker; ValueError from a Detector.")
+      .def(
+          "pixels",
+          [](const PythonPeople& p, const std::string& set) {
+            const std::size_t count = p.of->body->joint_sets[find_joint_set(*p.of->body, set)].joints.size();
+            const Floats joints = places_of_all(p, count, [&](const PythonPerson& one) { return one.joints(set); });
+            return project(p.of->frame.camera, nb::cast<Places>(nb::cast(joints)));
+          },
+          "set"_a = "k4abt32",
+          "float64 (people, joints, 2): columns and rows in the picture; NaN where unknown or not in front of the "
+          "camera.")
       .def_prop_ro(
           "parts",
           [](const PythonPeople& p) {

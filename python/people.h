@@ -16,6 +16,7 @@ struct FoundPeople {
   Frame frame;  ///< without its pictures
   std::shared_ptr<const BodyModel> body;
   TrackedFrame people;
+  std::weak_ptr<const Frame> seen;  ///< the frame with its pictures, as long as somebody has it
 
   std::size_t size() const { return people.people.size(); }
 };
@@ -24,7 +25,7 @@ struct PythonPeople {
   std::shared_ptr<const FoundPeople> of;
 };
 
-/// Defines Person, Bone and People.
+/// Defines Person, Bone, Floor, Event and People.
 void bind_people(nanobind::module_& m);
 
 }  // namespace vesalius

@@ -223,6 +223,7 @@ struct StanceEvent {
   int id = 0;
   double time_s = 0.0;  ///< when the new stance began; earlier than the frame that reports it
   Stance stance = Stance::unknown;
+  Stance before = Stance::unknown;  ///< the stance that it took the place of
 };
 
 /// The people of a frame: of one of a sequence over which they are followed, or as a detector found them (seen_people).

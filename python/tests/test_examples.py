@@ -5,6 +5,7 @@ Usage: test_examples.py PROGRAM FRAMES
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -26,6 +27,13 @@ def needs(*modules):
 
     missing = [name for name in modules if not is_there(name)]
     return unittest.skipIf(missing, f"without {', '.join(missing)}")
+
+
+def said_by(cell):
+    """The text that a cell of a notebook gives, without the bytes of pictures."""
+    said = [output.get("text", "") + "".join(value for kind, value in sorted(output.get("data", {}).items()) if kind.startswith("text/"))
+            for output in cell.get("outputs", [])]
+    return re.sub("base64,[^\"]*", "", "".join(said))
 
 
 def run(name, *arguments):
@@ -62,12 +70,14 @@ class Examples(unittest.TestCase):
         import nbclient
         import nbformat
 
-        os.environ["VESALIUS_SOURCE"] = str(FOLDER)
+        os.environ["VESALIUS_SOURCE"] = str(FOLDER.parent / "demo")
         notebook = nbformat.read(EXAMPLES / "people.ipynb", as_version=4)
+        shown = [said_by(cell) for cell in notebook.cells]
         nbclient.NotebookClient(notebook, timeout=120).execute()
+        self.assertEqual(shown, [said_by(cell) for cell in notebook.cells], "what people.ipynb shows is not what it says today")
         pictures = [output for cell in notebook.cells for output in cell.get("outputs", [])
                     if "image/png" in output.get("data", {})]
-        self.assertEqual(len(pictures), 2)
+        self.assertEqual(len(pictures), 4)
 
     @needs("rerun.chunk")
     def test_shows_people_in_rerun(self):

@@ -5,7 +5,9 @@ Usage: test_vesalius.py PROGRAM FRAMES
 PROGRAM is `vesalius`, with whose numbers the package's are compared on the frames of a folder that it reads.
 """
 
+import base64
 import gc
+import io
 import json
 import math
 import os
@@ -18,6 +20,7 @@ import threading
 import time
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 started = time.perf_counter()
 import vesalius  # noqa: E402  (its time is measured)
@@ -70,6 +73,7 @@ with open({said.name!r}, "w") as file:
 """
 
 PROGRAM, FOLDER = sys.argv.pop(1), Path(sys.argv.pop(1))
+DEMO = FOLDER.parent / "demo"
 # Two libraries may read a JPEG differently: colour is left out where pictures are compared with the program's.
 WITHOUT_COLOUR = tempfile.TemporaryDirectory()
 shutil.copytree(FOLDER / "depth", Path(WITHOUT_COLOUR.name) / "depth")
@@ -273,6 +277,158 @@ class Package(unittest.TestCase):
         self.assertTrue(((labels != 255) <= (mask == 1)).all())
         self.assertLess(int(labels[labels != 255].max()), len(self.detector.parts))
 
+    def test_has_the_pixels_of_joints(self):
+        for frame in vesalius.open(FOLDER):
+            people = self.detector.detect(frame)
+            for points in ("k4abt32", "coco17"):
+                x, y, z = numpy.moveaxis(people.joints(points).astype(float), -1, 0)
+                expected = numpy.stack([x / z * frame.camera.fx + frame.camera.cx, y / z * frame.camera.fy + frame.camera.cy], -1)
+                numpy.testing.assert_allclose(people.pixels(points), expected, atol=1e-5)
+                for person, of_all in zip(people, people.pixels(points)):
+                    numpy.testing.assert_array_equal(person.pixels(points), of_all)
+        unknown = CAMERA.project([[1, 2, 0], [1, 2, -1], [math.nan, 2, 1]])
+        self.assertTrue(numpy.isnan(unknown).all(axis=1).all())
+        numpy.testing.assert_allclose(CAMERA.project(numpy.float32([0, 0, 2])), [CAMERA.cx, CAMERA.cy])
+
+    def test_has_the_points_of_people(self):
+        for frame in vesalius.open(FOLDER):
+            rows, columns = numpy.indices(frame.depth.shape)
+            z = frame.depth / 1000.0
+            camera = frame.camera
+            places = numpy.stack([(columns - camera.cx) / camera.fx * z, (rows - camera.cy) / camera.fy * z, z], -1)
+            people = self.detector.detect(frame)
+            self.assertGreater(len(people), 0)
+            for person in people:
+                points = person.points(frame)
+                self.assertEqual(points.dtype, numpy.float32)
+                numpy.testing.assert_allclose(points, places[(person.mask == 1) & (frame.depth > 0)], atol=1e-5)
+                numpy.testing.assert_array_equal(person.points(frame.depth), points)
+                self.assertGreater(len(points), 500)
+
+    def test_draws_people(self):
+        for frame in vesalius.open(FOLDER):
+            people = self.detector.detect(frame)
+            before = frame.colour.copy()
+            picture = people.draw(frame.colour)
+            numpy.testing.assert_array_equal(frame.colour, before)
+            numpy.testing.assert_array_equal(people.draw(frame), picture)
+            changed = (picture != before).any(axis=2)
+            # Each person's pixels are tinted, and what lies 60 pixels off them, their boxes and their parts is as before.
+            for person in people:
+                self.assertGreater(changed[person.mask == 1].mean(), 0.9)
+            near = numpy.zeros(changed.shape, bool)
+            for person in people:
+                at = frame.camera.project(person.parts)
+                at = at[~numpy.isnan(at).any(axis=1)]
+                u, v, width, height = person.box
+                low = numpy.minimum(at.min(axis=0), (u, v)).astype(int) - 60
+                high = numpy.maximum(at.max(axis=0), (u + width, v + height)).astype(int) + 60
+                near[max(0, low[1]):max(0, high[1]), max(0, low[0]):max(0, high[0])] = True
+            self.assertFalse(changed[~near].any())
+            over_depth = people.draw(frame.depth)
+            self.assertEqual(over_depth.shape, picture.shape)
+            self.assertTrue((over_depth != picture).any())
+        small = vesalius.Frame(numpy.ascontiguousarray(frame.depth[::2, ::2]),
+                               vesalius.Camera(CAMERA.fx / 2, CAMERA.fy / 2, CAMERA.cx / 2, CAMERA.cy / 2))
+        self.assertEqual(self.detector.detect(small).draw(small).shape, (*frame.depth.shape, 3))
+
+    def test_tells_what_happened(self):
+        program = subprocess.run([PROGRAM, "detect", str(DEMO), "-q", "--track", "--json", "-"], check=True, capture_output=True, text=True)
+        expected = [(event["id"], event["time_s"], event["stance"]) for line in map(json.loads, program.stdout.splitlines())
+                    for event in line.get("events", [])]
+        events, floors = [], []
+        tracker = vesalius.Tracker(self.detector)
+        for frame in vesalius.open(DEMO):
+            people = tracker.update(frame)
+            self.assertEqual((people.frame, people.time), (frame.name, frame.time))
+            events += people.events
+            if people.floor is not None:
+                floors.append(people.floor)
+                feet = people.joints()[:, self.detector.joint_names().index("l_ankle")] @ people.floor.up + people.floor.height
+                self.assertTrue((abs(feet[~numpy.isnan(feet)]) < 0.5).all())
+        self.assertEqual([(event.id, round(event.time, 6), event.stance) for event in events], expected)
+        said = [(event.id, round(event.time, 1), event.what, event.before) for event in events]
+        self.assertIn((1, 1.1, "fell", "standing"), said)
+        self.assertIn((1, 3.5, "stood up", "sitting"), said)
+        self.assertIn("1.13 s person 1 fell", str(events))
+        self.assertGreater(len(floors), 100)
+        self.assertAlmostEqual(float(numpy.linalg.norm(floors[-1].up)), 1.0, places=5)
+        self.assertIn(f"{floors[-1].height:.2f} m", repr(floors[-1]))
+        self.assertEqual(self.detector.detect(frame).events, [])
+        self.assertIsNone(self.detector.detect(frame).floor)
+
+    def test_smooths_joints_as_the_program_does(self):
+        expected = lines_of_program(FOLDER, "--track")
+        tracker = vesalius.Tracker(self.detector)
+        for frame in vesalius.open(FOLDER):
+            people = tracker.update(frame)
+            self.assertEqual(people.smoothed().shape, people.joints().shape)
+            for person, theirs in zip(people, expected[frame.name]["people"]):
+                for name, mine in zip(self.detector.joint_names(), person.smoothed()):
+                    if theirs["smoothed"]["k4abt32"][name]["xyz_m"] is not None:
+                        numpy.testing.assert_allclose(mine, theirs["smoothed"]["k4abt32"][name]["xyz_m"], atol=1e-3)
+
+    def test_shows_itself_in_a_notebook(self):
+        _, depth, colour = self.frames[0]
+        frame = vesalius.Frame(depth, CAMERA, colour, name="<b>one & two</b>")
+        people = self.detector.detect(frame)
+        self.assertGreater(len(people), 0)
+        page = people._repr_html_()
+        root = ElementTree.fromstring(page.replace("<br>", "<br/>").replace('"></div>', '"/></div>'))  # else it is XML
+        rows = root.findall(".//tr")
+        self.assertEqual(len(rows), 1 + len(people))
+        heads = [cell.text for cell in rows[0]]
+        for index, (person, row) in enumerate(zip(people, rows[1:])):
+            cells = dict(zip(heads, (cell.text for cell in row)))
+            self.assertEqual((cells["person"], cells["score"]), (str(index), f"{person.score:.2f}"))
+            self.assertIn(f"\n  {index}: seen, score {person.score:.2f}", repr(people))
+        self.assertNotIn("<b>", page)
+        self.assertIn("one & two", "".join(root.itertext()))
+        self.assertIn("one & two", repr(people))
+        picture = self.picture_of(page)
+        self.assertLess(numpy.abs(picture - people.draw(frame).astype(int)).mean(), 4.0)
+        # Without the frame they stand on black.
+        del frame
+        gc.collect()
+        picture = self.picture_of(people._repr_html_())
+        self.assertGreater(picture[people[0].mask == 1].mean(), 20)
+        self.assertLess(picture[:, -5:].mean(), 3)
+        nobody = self.detector.detect(numpy.zeros((48, 64), numpy.uint16), CAMERA)
+        self.assertIn("0 people", nobody._repr_html_())
+        self.assertEqual(repr(nobody), "<vesalius.People: 0>")
+
+    def picture_of(self, page):
+        return numpy.array(Image.open(io.BytesIO(base64.b64decode(page.split("base64,")[1].split('"')[0])))).astype(int)
+
+    def test_says_in_one_line_what_a_call_should_have_been(self):
+        _, depth, colour = self.frames[0]
+        detect, frame = self.detector.detect, vesalius.Frame(depth, CAMERA, colour)
+        people = detect(frame)
+        for why, wrong in {
+            "with its camera: detect(depth, vesalius.Camera(fx, fy, cx, cy), colour); got (ndarray)": lambda: detect(depth),
+            "got (list, Camera)": lambda: detect([1, 2, 3], CAMERA),
+            "got (ndarray, camera=NoneType)": lambda: detect(depth, camera=None),
+            "got (Frame, name=str)": lambda: vesalius.Tracker(self.detector).update(frame, name="one"),
+            "Camera(fx, fy, cx, cy): four numbers, in pixels; got (int, int, float)": lambda: vesalius.Camera(525, 525, 319.5),
+            "four numbers, in pixels; got (int, int, str, int)": lambda: vesalius.Camera(525, 525, "319.5", 240),
+            "four numbers, in pixels; got (focal=int)": lambda: vesalius.Camera(focal=525),
+            "a vesalius.Camera(fx, fy, cx, cy); got (ndarray)": lambda: vesalius.Frame(depth),
+            "Tracker(detector): a vesalius.Detector; got ()": lambda: vesalius.Tracker(),
+            "got (str, fz=int)": lambda: vesalius.open("/none", fz=3),
+            "not int": lambda: vesalius.open(3),
+            "threads=0": lambda: vesalius.Detector(threads="many"),
+            "the name of a joint set": lambda: people.joints(4),
+            "a vesalius.Frame, or a picture": lambda: people.draw("picture.png"),
+            "or its depth as a numpy array; got ()": lambda: people[0].points(),
+            "a whole number; got (str)": lambda: people["first"],
+        }.items():
+            with self.assertRaises(TypeError, msg=why) as raised:
+                wrong()
+            self.assertIn(why, str(raised.exception))
+            self.assertEqual(len(str(raised.exception).splitlines()), 1)
+        self.assertEqual(vesalius.Camera(525, 525, 319, 239).fx, 525)  # whole numbers are numbers
+        self.assertIn("joints(self, set: str = 'k4abt32')", people.joints.__doc__)
+
     def test_says_what_does_not_fit(self):
         _, depth, colour = self.frames[0]
         detect = self.detector.detect
@@ -280,7 +436,15 @@ class Package(unittest.TestCase):
             "expected dtype uint16": lambda: detect(depth.astype(numpy.int32), CAMERA),
             "expected height x width": lambda: detect(depth[0], CAMERA),
             "colour: an array of shape": lambda: detect(depth, CAMERA, depth),
-            "search_minparts is no option": lambda: vesalius.Detector(search_minparts=3),
+            "search_minparts is no option; did you mean search_min_parts?": lambda: vesalius.Detector(search_minparts=3),
+            "min_score is no option; did you mean refine_min_score?": lambda: vesalius.Detector(min_score=0.5),
+            "nonsense is no option; vesalius.options() lists them": lambda: vesalius.Detector(nonsense=3),
+            "an array of dtype float64": lambda: detect(depth.astype(float), CAMERA),
+            "draw: a picture of 640x10, expected 640x480": lambda: detect(depth, CAMERA).draw(depth[:10]),
+            "expected 480x640x3 of dtype uint8": lambda: detect(depth, CAMERA).draw(colour / 255.0),
+            "points: a picture of 640x10": lambda: detect(depth, CAMERA)[0].points(depth[:10]),
+            "smoothed: a Detector sees one frame alone": lambda: detect(depth, CAMERA).smoothed(),
+            "expected an array of points (..., 3)": lambda: CAMERA.project([1, 2]),
             "refine.min-score": lambda: vesalius.Detector(refine_min_score=7.0),
             "expected a whole number": lambda: vesalius.Detector(refine_max_candidates=1.5),
             "threads: expected": lambda: vesalius.Detector(threads=-1),
@@ -295,6 +459,7 @@ class Package(unittest.TestCase):
             with self.assertRaises(ValueError, msg=why) as raised:
                 wrong()
             self.assertIn(why, str(raised.exception))
+            self.assertEqual(len(str(raised.exception).splitlines()), 1)
         for wrong in (lambda: vesalius.Detector("/none.forest"), lambda: vesalius.Detector(__file__),
                       lambda: vesalius.open("/none"), lambda: vesalius.open(Path(__file__)),
                       lambda: vesalius.open("realsense:none"), lambda: vesalius.open(FOLDER, camera_file="/none"),
@@ -304,8 +469,6 @@ class Package(unittest.TestCase):
             self.assertEqual(len(str(raised.exception).splitlines()), 1)
         with self.assertRaises(IndexError):
             detect(depth, CAMERA)[99]
-        with self.assertRaises(TypeError):
-            detect([1, 2, 3], CAMERA)
 
     def test_gives_the_same_from_ten_threads(self):
         _, depth, colour = self.frames[0]
@@ -351,9 +514,15 @@ class Package(unittest.TestCase):
 
     def test_is_imported_quickly_and_says_its_options(self):
         self.assertLess(IMPORT_MS, 500, "numpy apart")
-        lines = vesalius.options().splitlines()
+        lines = vesalius.describe_options().splitlines()
         self.assertTrue(any(line.startswith("refine_min_score = 0.8: ") for line in lines))
         self.assertTrue(any(line.startswith("track_rate = 30.0") for line in lines))
+        options = vesalius.options()
+        self.assertEqual(list(options), [line.split(" = ")[0] for line in lines])
+        self.assertEqual((options["refine_min_score"], options["track_rate"]), (0.8, 30.0))
+        # What is said is taken, and nothing else is changed by it.
+        self.assertEqual(vesalius.Detector(**options).options(), options)
+        self.assertEqual(vesalius.Detector(refine_min_score=0.9).options(), options | {"refine_min_score": 0.9})
 
 
 if __name__ == "__main__":

@@ -28,12 +28,16 @@ def _expect_main_interpreter() -> None:
 
 
 _expect_main_interpreter()
-from ._vesalius import (Bone, Camera, Error, Frame, People, Person, Source, Tracker, __version__, open,  # noqa: A004, E402
-                        options)
+from . import _calls  # noqa: E402
+
+_calls.install()
+from ._vesalius import VERSION as __version__  # noqa: E402
+from ._vesalius import (Bone, Camera, Error, Event, Floor, Frame, People, Person, Source, Tracker, describe_options,  # noqa: E402
+                        open, options)  # noqa: A004
 from ._vesalius import Detector as _Detector  # noqa: E402
 
-__all__ = ["Bone", "Camera", "Detector", "Error", "Frame", "People", "Person", "Source", "Tracker", "open", "options",
-           "__version__"]
+__all__ = ["Bone", "Camera", "Detector", "Error", "Event", "Floor", "Frame", "People", "Person", "Source", "Tracker",
+           "describe_options", "open", "options", "__version__"]
 
 _MODEL = _Path(__file__).parent / "models" / "default.model"
 
@@ -44,7 +48,8 @@ class Detector(_Detector):
     model: path of a trained forest; the one that comes with vesalius without. threads: most threads, 0 for all.
     Everything else is an option of the detector, of tracking or of fitted bodies, ``Detector(refine_min_score=0.9)``:
 
-{options()}"""
+{describe_options()}"""
 
-    def __init__(self, model: "str | _os.PathLike[str] | None" = None, *, threads: int = 0, **options: object) -> None:
+    def __init__(self, model: "str | _os.PathLike[str] | None" = None, *, threads: int = 0,
+                 **options: "float | int | bool | str") -> None:
         super().__init__(_os.fspath(model if model is not None else _MODEL), threads, **options)

@@ -9,14 +9,14 @@
 import numpy as _numpy
 import rerun as _rerun
 
-from . import Frame, People
+from . import Frame, People, Person
 
 __all__ = ["log"]
 
 _NOBODY = 0  # a class of its own: Rerun does not draw it
 
 
-def _log_frame(frame: Frame, entity: str, recording) -> None:
+def _log_frame(frame: Frame, entity: str, recording: "_rerun.RecordingStream | None") -> None:
     camera = frame.camera
     height, width = frame.depth.shape
     at = f"{entity}/camera"
@@ -28,7 +28,7 @@ def _log_frame(frame: Frame, entity: str, recording) -> None:
         _rerun.log(f"{at}/colour", _rerun.Image(frame.colour), recording=recording)
 
 
-def _log_labels(people: People, entity: str, recording) -> None:
+def _log_labels(people: People, entity: str, recording: "_rerun.RecordingStream | None") -> None:
     _rerun.log(entity, _rerun.ViewCoordinates.RDF, static=True, recording=recording)
     classes = [_rerun.AnnotationInfo(id=_NOBODY, label="nobody", color=(0, 0, 0, 0))]
     classes += [_rerun.AnnotationInfo(id=1 + i, label=name, color=colour)
@@ -39,7 +39,8 @@ def _log_labels(people: People, entity: str, recording) -> None:
     _rerun.log(f"{entity}/camera/labels", _rerun.SegmentationImage(picture), recording=recording)
 
 
-def _log_person(person, people: People, joints: str, entity: str, recording) -> None:
+def _log_person(person: Person, people: People, joints: str, entity: str,
+                recording: "_rerun.RecordingStream | None") -> None:
     parts = person.parts
     known = ~_numpy.isnan(parts).any(axis=1)
     lines = [(bone.head, bone.tail) for bone in person.bones]

@@ -292,7 +292,7 @@ TrackedFrame PeopleMerger::merge(std::vector<CameraPeople> seen) {
     }
     if (person.is_found()) person.motion.update(person.found_middle(), kSigma_m);
     TrackedPerson told = s.describe(person);
-    if (told.stance != person.stance) out.events.push_back({person.id, out.time_s, told.stance});
+    if (told.stance != person.stance) out.events.push_back({person.id, out.time_s, told.stance, person.stance});
     person.stance = told.stance;
     person.last = told;
     person.last.person.mask = {};

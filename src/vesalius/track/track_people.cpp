@@ -394,8 +394,9 @@ std::optional<Posture> PeopleTracker::State::take_stance(const Frame& frame, Tra
     if (track.body && fitter) posed.emplace(PosedBody{*track.body, fitter->flesh()});
     posture = posture_of(*found, frame, body, *up, height_m, posed);
   }
+  const Stance before = track.stance.stance();
   const auto changed = track.stance.update(posture, out.time_s);
-  if (changed && is_sure(track)) out.events.push_back({track.id, changed->second, changed->first});
+  if (changed && is_sure(track)) out.events.push_back({track.id, changed->second, changed->first, before});
   return posture;
 }
 

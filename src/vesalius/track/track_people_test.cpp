@@ -670,6 +670,7 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].id, 1);
   EXPECT_EQ(events[0].stance, Stance::standing);
+  EXPECT_EQ(events[0].before, Stance::unknown);
 }
 
 TEST(TrackPeople, WhoIsNearTheFloorIsFollowedWhileSomethingIsThere) {
