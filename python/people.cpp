@@ -51,9 +51,9 @@ struct PythonPerson {
     return person().joints[find_joint_set(*of->body, set)];
   }
   const std::vector<Joint>& smoothed(const std::string& set) const {
-    const int index = find_joint_set(*of->body, set);
     if (!is_followed()) throw UsageError("smoothed: a Detector sees one frame alone; the people of a Tracker have it");
-    return tracked().smoothed.empty() ? person().joints[index] : tracked().smoothed[index];
+    const std::vector<std::vector<Joint>>& sets = tracked().smoothed.empty() ? person().joints : tracked().smoothed;
+    return sets[find_joint_set(*of->body, set)];
   }
 };
 
