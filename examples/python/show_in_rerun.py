@@ -1,6 +1,6 @@
 """Shows the people of a source in the Rerun viewer, or writes what it shows: usage: show_in_rerun.py SOURCE [OUT.rrd]
 
-Needs `pip install rerun-sdk` beside vesalius.
+Needs the package `rerun-sdk` beside vesalius.
 """
 
 import sys

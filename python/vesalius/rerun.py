@@ -1,4 +1,4 @@
-"""Shows people in the Rerun viewer: `pip install rerun-sdk`.
+"""Shows people in the Rerun viewer, whose package is `rerun-sdk`.
 
     import rerun, vesalius, vesalius.rerun
     rerun.init("people", spawn=True)
