@@ -63,7 +63,7 @@ Eigen::Vector3d offset_from(const FittedBone& parent, const FittedBone& bone) {
 /// The bodies of one person.
 struct Bodies {
   std::size_t first = 0, last = 0;  ///< frames
-  std::map<std::size_t, const std::vector<FittedBone>*> of_frame;
+  std::map<std::size_t, const FittedBody*> of_frame;
 };
 
 std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bodies& bodies) {
@@ -74,6 +74,7 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
     if (known < 0) throw Error(fmt::format("a body with a bone {}, which this version does not know", record.bones[b]));
     MovingSkeleton::Bone bone;
     bone.name = mixamo_name(record.bones[b]);
+    bone.flesh = known;
     const int parent = flesh.bones[known].parent;
     if (parent >= 0) {
       const auto at = std::ranges::find(record.bones, flesh.bones[parent].name);
@@ -85,9 +86,9 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
     }
     std::vector<Eigen::Vector3d> offsets, tails;
     for (const auto& [unused, body] : bodies.of_frame) {
-      const FittedBone& here = (*body)[b];
+      const FittedBone& here = body->bones[b];
       tails.push_back(turn_of(here).conjugate() * (rounded(here.tail) - rounded(here.head)));
-      if (bone.parent >= 0) offsets.push_back(offset_from((*body)[bone.parent], here));
+      if (bone.parent >= 0) offsets.push_back(offset_from(body->bones[bone.parent], here));
     }
     bone.tail_m = median(tails);
     if (!offsets.empty()) bone.offset_m = median(offsets);
@@ -96,8 +97,26 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
   return bones;
 }
 
-MovingSkeleton::Pose pose_of(const std::vector<FittedBone>& body, const std::vector<MovingSkeleton::Bone>& bones) {
+/// Returns the medians of a person's shapes, or nothing if a body has none, as of versions before.
+std::vector<float> shape_of(const Bodies& bodies) {
+  const auto shapes = static_cast<std::size_t>(builtin_flesh().shapes);
+  std::vector<std::vector<double>> of_frames(shapes);
+  for (const auto& [unused, body] : bodies.of_frame) {
+    if (body->shape.empty()) return {};
+    if (body->shape.size() != shapes) {
+      throw Error(fmt::format("a body whose shape has {} numbers, expected {}", body->shape.size(), shapes));
+    }
+    for (std::size_t k = 0; k < shapes; ++k) of_frames[k].push_back(double(body->shape[k]));
+  }
+  std::vector<float> shape;
+  for (std::vector<double>& values : of_frames) shape.push_back(float(median(std::move(values))));
+  return shape;
+}
+
+MovingSkeleton::Pose pose_of(const FittedBody& fitted, const std::vector<MovingSkeleton::Bone>& bones) {
+  const std::vector<FittedBone>& body = fitted.bones;
   MovingSkeleton::Pose pose;
+  pose.shape = fitted.shape;
   pose.root_m = upright() * rounded(body.front().head);
   for (std::size_t b = 0; b < bones.size(); ++b) {
     if (bones[b].parent < 0) {
@@ -122,7 +141,7 @@ std::vector<MovingSkeleton> moving_skeletons(const PeopleRecord& record, std::op
       Bodies& bodies = all[one.id];
       if (bodies.of_frame.empty()) bodies.first = f;
       bodies.last = f;
-      bodies.of_frame[f] = &one.body->bones;
+      bodies.of_frame[f] = &*one.body;
     }
   }
   if (all.empty()) {
@@ -134,6 +153,7 @@ std::vector<MovingSkeleton> moving_skeletons(const PeopleRecord& record, std::op
     MovingSkeleton& skeleton = skeletons.emplace_back();
     skeleton.id = id;
     skeleton.bones = bones_of(record, bodies);
+    skeleton.shape = shape_of(bodies);
     for (std::size_t f = bodies.first; f <= bodies.last; ++f) {
       const auto here = bodies.of_frame.find(f);
       if (here != bodies.of_frame.end()) {
@@ -148,6 +168,7 @@ std::vector<MovingSkeleton> moving_skeletons(const PeopleRecord& record, std::op
         }
       } else {
         skeleton.poses.push_back(skeleton.poses.back());
+        skeleton.poses.back().there = false;
       }
       skeleton.poses.back().time_s = record.frames[f].time_s;
     }

@@ -97,6 +97,9 @@ class LineReader {
   void read_value(const Json& json, double& to) const { to = number(json); }
   void read_value(const Json& json, Eigen::Vector3f& to) const { to = vector<3>(json).cast<float>(); }
   void read_value(const Json& json, Eigen::Quaternionf& to) const { to.coeffs() = quaternion(json).cast<float>(); }
+  void read_value(const Json& json, std::vector<float>& to) const {
+    for (const Json& value : json) to.push_back(float(number(value)));
+  }
   void read_value(const Json& json, Box& to) const {
     if (json.empty()) return;
     (void)vector<4>(json);

@@ -109,5 +109,16 @@ TEST(ParsePeople, SaysWhereALineIsNotAsExpected) {
   EXPECT_THAT([&] { parse_people(back, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("line 3: a time before")));
 }
 
+TEST(ParsePeople, ReadsTheShapesOfBodies) {
+  std::string lines = test::lines();
+  const std::size_t at = lines.find(R"("bones":)");
+  lines.insert(at, R"("shape":[0.5,-1.25],)");
+  const PeopleRecord record = parse_people(lines, "people.jsonl", {});
+  EXPECT_EQ(record.frames[0].people[0].body->shape, (std::vector<float>{0.5F, -1.25F}));
+  EXPECT_TRUE(record.frames[1].people[0].body->shape.empty()) << "a line of a version before";
+  lines.replace(lines.find("-1.25"), 5, "true");
+  EXPECT_THROW(parse_people(lines, "people.jsonl", {}), Error);
+}
+
 }  // namespace
 }  // namespace vesalius

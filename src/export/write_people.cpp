@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "export/write_gltf.h"
 #include "stream/json_numbers.h"
 #include "vesalius/error.h"
 
@@ -276,109 +277,6 @@ std::string to_bvh(const MovingSkeleton& skeleton) {
     out += "\n";
   }
   return out;
-}
-
-namespace {
-
-/// The binary part of a glTF file with its accessors.
-class GltfBuffer {
- public:
-  /// Adds floats, `of_each` to an element, and returns the accessor's index.
-  std::size_t add(const std::vector<float>& values, std::size_t of_each) {
-    static const char* const kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-    Json accessor{{"bufferView", views.size()},
-                  {"componentType", 5126},
-                  {"count", values.size() / of_each},
-                  {"type", kTypes[of_each]}};
-    if (of_each == 1) {  // key frames must say their range
-      accessor["min"] = {*std::ranges::min_element(values)};
-      accessor["max"] = {*std::ranges::max_element(values)};
-    }
-    accessors.push_back(std::move(accessor));
-    views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(float)}});
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
-    return accessors.size() - 1;
-  }
-
-  Json accessors = Json::array(), views = Json::array();
-  std::string bytes;
-};
-
-void append_word(std::string& out, std::uint32_t word) {
-  for (unsigned i = 0; i < 4; ++i) out += static_cast<char>(word >> (8 * i) & 255U);
-}
-
-void append_chunk(std::string& out, const char* type, std::string content, char filler) {
-  content.resize((content.size() + 3) / 4 * 4, filler);
-  append_word(out, static_cast<std::uint32_t>(content.size()));
-  out.append(type, 4);
-  out += content;
-}
-
-}  // namespace
-
-std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
-  GltfBuffer buffer;
-  Json nodes = Json::array(), roots = Json::array(), samplers = Json::array(), channels = Json::array();
-  double begin_s = skeletons.front().poses.front().time_s;
-  for (const MovingSkeleton& skeleton : skeletons) begin_s = std::min(begin_s, skeleton.poses.front().time_s);
-  for (const MovingSkeleton& skeleton : skeletons) {
-    const std::size_t first = nodes.size();
-    std::vector<float> times, places;
-    for (const MovingSkeleton::Pose& pose : skeleton.poses) {
-      // Key frames must rise strictly; recordings may have two frames at one time.
-      const auto time = float(pose.time_s - begin_s);
-      times.push_back(times.empty() || time > times.back() ? time : std::nextafter(times.back(), 1e9F));
-      for (int axis = 0; axis < 3; ++axis) places.push_back(float(pose.root_m[axis]));
-    }
-    const std::size_t input = buffer.add(times, 1);
-    const auto animate = [&](std::size_t node, const char* path, std::size_t output) {
-      channels.push_back({{"sampler", samplers.size()}, {"target", {{"node", node}, {"path", path}}}});
-      samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
-    };
-    const std::string prefix = skeletons.size() > 1 ? fmt::format("person{}:", skeleton.id) : "";
-    for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
-      const MovingSkeleton::Bone& bone = skeleton.bones[b];
-      Json node{{"name", prefix + bone.name}};
-      if (bone.parent >= 0) node["translation"] = {bone.offset_m.x(), bone.offset_m.y(), bone.offset_m.z()};
-      Json children = Json::array();
-      for (std::size_t child = b + 1; child < skeleton.bones.size(); ++child) {
-        if (skeleton.bones[child].parent == int(b)) children.push_back(first + child);
-      }
-      if (!children.empty()) node["children"] = std::move(children);
-      nodes.push_back(std::move(node));
-      std::vector<float> turns;
-      for (const MovingSkeleton::Pose& pose : skeleton.poses) {
-        for (const double part : pose.local[b].coeffs()) turns.push_back(float(part));
-      }
-      animate(first + b, "rotation", buffer.add(turns, 4));
-      if (bone.parent < 0) continue;
-      std::vector<float> offsets;
-      for (const MovingSkeleton::Pose& pose : skeleton.poses) {
-        for (const double along : pose.offsets_m[b]) offsets.push_back(float(along));
-      }
-      animate(first + b, "translation", buffer.add(offsets, 3));
-    }
-    roots.push_back(first);
-    animate(first, "translation", buffer.add(places, 3));
-  }
-  const Json gltf{
-      {"asset", {{"version", "2.0"}, {"generator", "vesalius " VESALIUS_VERSION}}},
-      {"scene", 0},
-      {"scenes", Json::array({{{"nodes", std::move(roots)}}})},
-      {"nodes", std::move(nodes)},
-      {"animations",
-       Json::array({{{"name", "people"}, {"channels", std::move(channels)}, {"samplers", std::move(samplers)}}})},
-      {"accessors", std::move(buffer.accessors)},
-      {"bufferViews", std::move(buffer.views)},
-      {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})}};
-  std::string chunks;
-  append_chunk(chunks, "JSON", gltf.dump(), ' ');
-  append_chunk(chunks, std::string("BIN\0", 4).c_str(), std::move(buffer.bytes), '\0');
-  std::string out = "glTF";
-  append_word(out, 2);
-  append_word(out, static_cast<std::uint32_t>(12 + chunks.size()));
-  return out + chunks;
 }
 
 namespace {

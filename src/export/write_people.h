@@ -35,9 +35,6 @@ std::string to_k4abt(const PeopleRecord& record, const std::string& source);
 /// A skeleton as BVH: centimetres, angles about z, x and y. Its bones keep their length, as the format has them once.
 std::string to_bvh(const MovingSkeleton& skeleton);
 
-/// Skeletons as binary glTF 2.0: nodes with an animation, metres, each frame's body as it was fitted.
-std::string to_glb(const std::vector<MovingSkeleton>& skeletons);
-
 /// What is asked of a format.
 struct ExportRequest {
   std::size_t set = 0;        ///< set of joints, for formats that have one

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -179,43 +177,6 @@ TEST(MovingSkeletons, GoOnWhereAPersonIsAwayAndSayWhenNobodyHasABody) {
   EXPECT_DOUBLE_EQ(all[1].poses[1].time_s, 0.08);
   EXPECT_THAT([&] { moving_skeletons(record, 3); }, testing::ThrowsMessage<Error>(testing::HasSubstr("person 3")));
   EXPECT_THROW(moving_skeletons(parse_people(test::lines(false), "x", {}), std::nullopt), Error);
-}
-
-TEST(ToGlb, IsAWellFormedFileWithTheRotationsOfEveryFrame) {
-  const std::vector<MovingSkeleton> skeletons = moving_skeletons(test::people(), std::nullopt);
-  const std::string glb = to_glb(skeletons);
-  const auto word = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, glb.data() + at, 4);
-    return value;
-  };
-  ASSERT_EQ(glb.substr(0, 4), "glTF");
-  EXPECT_EQ(word(4), 2U);
-  EXPECT_EQ(word(8), glb.size());
-  const std::uint32_t json_size = word(12);
-  EXPECT_EQ(json_size % 4, 0U);
-  const json gltf = json::parse(glb.substr(20, json_size));
-  const std::size_t binary = 20 + json_size + 8;
-  EXPECT_EQ(glb.substr(binary - 4, 4), std::string("BIN\0", 4));
-  EXPECT_EQ(gltf.at("nodes").size(), 6U);
-  EXPECT_EQ(gltf.at("scenes").at(0).at("nodes"), (json{0, 3}));
-  EXPECT_EQ(gltf.at("nodes").at(3).at("name"), "person7:Hips");
-  for (const json& channel : gltf.at("animations").at(0).at("channels")) {
-    const json& sampler = gltf.at("animations").at(0).at("samplers").at(channel.at("sampler").get<std::size_t>());
-    const json& output = gltf.at("accessors").at(sampler.at("output").get<std::size_t>());
-    const json& view = gltf.at("bufferViews").at(output.at("bufferView").get<std::size_t>());
-    const bool turns = channel.at("target").at("path") == "rotation";
-    EXPECT_EQ(output.at("type"), turns ? "VEC4" : "VEC3");
-    const auto node = channel.at("target").at("node").get<std::size_t>();
-    const MovingSkeleton& skeleton = skeletons[node / 3];
-    ASSERT_EQ(output.at("count"), skeleton.poses.size());
-    float first[4];
-    std::memcpy(first, glb.data() + binary + view.at("byteOffset").get<std::size_t>(), turns ? 16 : 12);
-    const Eigen::Quaterniond& local = skeleton.poses[0].local[node % 3];
-    const Eigen::Vector3d& place = node % 3 == 0 ? skeleton.poses[0].root_m : skeleton.poses[0].offsets_m[node % 3];
-    EXPECT_NEAR(first[0], turns ? local.x() : place.x(), 1e-6);
-    EXPECT_NEAR(first[1], turns ? local.y() : place.y(), 1e-6);
-  }
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ inline constexpr auto kFields<Person> = std::tuple{
 template <>
 inline constexpr auto kFields<FittedBody> = std::tuple{
     Field{&FittedBody::stature_m, "stature", "m", "Height of the person standing upright, metres, by the fitted body."},
-    Field{&FittedBody::misfit, "misfit", "", "Mean cost of a point of the fitted body, lower is better."}};
+    Field{&FittedBody::misfit, "misfit", "", "Mean cost of a point of the fitted body, lower is better."},
+    Field{&FittedBody::shape, "shape", "", "How the fitted body differs from the population, standard deviations."}};
 
 template <>
 inline constexpr auto kFields<FittedBone> = std::tuple{

@@ -22,6 +22,11 @@ Json value_json(const Eigen::Vector3f& v) { return {rounded(v.x()), rounded(v.y(
 Json value_json(const Eigen::Quaternionf& q) {
   return {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())};
 }
+Json value_json(const std::vector<float>& values) {
+  Json numbers = Json::array();
+  for (const float value : values) numbers.push_back(rounded(value));
+  return numbers;
+}
 Json value_json(const Box& box) { return {box.u, box.v, box.width, box.height}; }
 /// A covariance in square metres, as square millimetres.
 Json value_json(const Eigen::Matrix3f& c) {

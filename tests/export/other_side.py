@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Reads what `vesalius export` writes with the tools of others, and compares it with the people that went in.
 
-Usage: other_side.py PROGRAM SOURCE [--blender BLENDER]
+Usage: other_side.py PROGRAM SOURCE [--blender BLENDER] [--three FOLDER]
 
 SOURCE is what `vesalius detect` reads. CSV by pandas, COCO by pycocotools, glTF by pygltflib, TRC by OpenSim's rules for
-the format, Azure Kinect's JSON by its keys, BVH in Blender where it is given. Joints are within 1 mm, those of BVH, whose
-bones have one length each, within 5 mm in the median; rotations within 1 degree.
+the format, Azure Kinect's JSON by its keys, BVH and glTF in Blender where it is given, glTF in three.js where the folder
+with it is (web/node_modules). Joints are within 1 mm, those of BVH, whose bones have one length each, within 5 mm in the
+median; rotations within 1 degree. The flesh's surface is within 1 mm of what data/bodies/flesh.toml says of the bodies.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import math
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 import numpy
@@ -22,6 +24,7 @@ import pygltflib
 from pycocotools.coco import COCO
 from pygltflib import validator
 
+FLESH = Path(__file__).parent.parent.parent / "data/bodies/flesh.toml"
 NAMES = {"pelvis": "Hips", "chest": "Spine1", "head": "Head", "l_forearm": "LeftForeArm", "r_hand": "RightHand",
          "l_shin": "LeftLeg", "r_foot": "RightFoot"}
 
@@ -136,20 +139,69 @@ def compare_bones(what, places, frames, person_id, within_mm):
     return f"{numpy.median(apart):.2f} mm in the median, {numpy.percentile(apart, 95):.1f} in 95 of 100, of {len(apart)}"
 
 
+def flesh_of():
+    """The bones of the population's flesh, right ones too: name -> axis, stations, mean, shapes."""
+    bones = {}
+    for bone in tomllib.loads(FLESH.read_text())["bone"]:
+        axis = "xyz".index(bone["axis"])
+        numbers = numpy.array([bone["mean"], *bone["shapes"]])
+        bones[bone["name"]] = axis, bone["stations"], numbers
+        if bone["name"].startswith("l_"):
+            other = numbers.copy()
+            other[:, [0, 3] if axis == 0 else [0, 3, 6, 10, 14]] *= -1
+            bones["r_" + bone["name"][2:]] = axis, bone["stations"], other
+    return bones
+
+
+def surface_of(body, flesh):
+    """Points of a body's flesh, y up: of each bone three ellipses."""
+    points = []
+    angles = 2 * math.pi * numpy.arange(14) / 14
+    for name, bone in body["bones"].items():
+        axis, stations, numbers = flesh[name]
+        numbers = numbers[0] + numpy.array(body["shape"]) @ numbers[1:]
+        first, second = [a for a in range(3) if a != axis]
+        for i, station in enumerate(stations):
+            u, v, half_u, half_v = numbers[6 + 4 * i : 10 + 4 * i]
+            ring = numpy.zeros((14, 3))
+            ring[:, axis] = station * numbers[3 + axis]
+            ring[:, first] = u + half_u * numpy.cos(angles)
+            ring[:, second] = v + half_v * numpy.sin(angles)
+            points.append(numpy.array(bone["head_m"]) + ring @ matrix(bone["global_xyzw"]).T)
+    return numpy.concatenate(points) * [1, -1, -1]
+
+
+def sampled(frames, person_id):
+    """Places in bodies_of of some bodies, the first among them, as bodies change most at first."""
+    bodies = bodies_of(frames, person_id)
+    return [i for i in sorted({0, 1, 2, 5, *range(0, len(bodies), 12)}) if i < len(bodies) and bodies[i]]
+
+
+def compare_surface(what, vertices, frames, person_id):
+    """`vertices`: of each sampled frame all points of the mesh, metres, y up."""
+    bodies, flesh, worst = bodies_of(frames, person_id), flesh_of(), 0
+    for i, mesh in zip(sampled(frames, person_id), vertices, strict=True):
+        expected = surface_of(bodies[i], flesh)
+        apart = [numpy.linalg.norm(numpy.asarray(mesh) - point, axis=1).min() for point in expected]
+        worst = max(worst, 1000 * max(apart))
+    expect(worst < 1, f"{what}: the surface is {worst:.1f} mm from where it was")
+    return f"surface at most {worst:.2f} mm from where it was, in {len(vertices)} frames"
+
+
 def check_glb(path, frames, person_id):
     gltf = pygltflib.GLTF2().load(str(path))
     validator.validate(gltf)  # throws what it finds
     blob = gltf.binary_blob()
 
-    def values(index, width):
+    def values(index):
         accessor = gltf.accessors[index]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor.type]
         begin = gltf.bufferViews[accessor.bufferView].byteOffset or 0
         return numpy.frombuffer(blob, numpy.float32, accessor.count * width, begin).reshape(-1, width)
 
     tracks = {}
     for channel in gltf.animations[0].channels:
-        output = gltf.animations[0].samplers[channel.sampler].output
-        tracks[channel.target.node, channel.target.path] = values(output, 4 if channel.target.path == "rotation" else 3)
+        tracks[channel.target.node, channel.target.path] = values(gltf.animations[0].samplers[channel.sampler].output)
     places = {}
 
     def walk(node, above, at):
@@ -164,34 +216,61 @@ def check_glb(path, frames, person_id):
     return compare_bones("glTF", places, frames, person_id, 1)
 
 
-BLENDER = """
+IN_BLENDER = """
 import bpy, builtins, json, sys
 plain_open = builtins.open  # Debian 12's Blender opens BVH with a mode that its Python has no more
 builtins.open = lambda file, mode="r", *more, **options: plain_open(file, mode.replace("U", ""), *more, **options)
-path, out = sys.argv[-2:]
+path, times, out = sys.argv[-3:]
 bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_anim.bvh(filepath=path, global_scale=0.01, axis_forward="-Z", axis_up="Y", rotate_mode="QUATERNION",
-                        update_scene_duration=True)
+scene = bpy.context.scene
+is_bvh = path.endswith(".bvh")
+if is_bvh:
+    bpy.ops.import_anim.bvh(filepath=path, global_scale=0.01, axis_forward="-Z", axis_up="Y", rotate_mode="QUATERNION",
+                            update_scene_duration=True)
+else:
+    bpy.ops.import_scene.gltf(filepath=path, import_shading="SMOOTH")  # the other shadings want NumPy before 1.24
 armature = next((o for o in bpy.data.objects if o.type == "ARMATURE"), None)
-places = {}
-first, last = bpy.context.scene.frame_start, bpy.context.scene.frame_end
-for frame in range(int(first), int(last) + 1):
-    bpy.context.scene.frame_set(frame)
+mesh = next((o for o in bpy.data.objects if o.type == "MESH" and o.find_armature() == armature), None)
+frames = range(int(scene.frame_start), int(scene.frame_end) + 1)
+if not is_bvh:
+    frames = [t * scene.render.fps / scene.render.fps_base for t in json.loads(times)]
+found = {"bones": {}, "vertices": []}
+for frame in frames:
+    scene.frame_set(int(frame), subframe=frame % 1)
     for bone in armature.pose.bones:
         x, y, z = armature.matrix_world @ bone.head
-        places.setdefault(bone.name, []).append([x, z, -y])
-json.dump(places, open(out, "w"))
+        found["bones"].setdefault(bone.name, []).append([x, z, -y])
+    if mesh:
+        shown = mesh.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        places = [shown.matrix_world @ v.co for v in shown.to_mesh().vertices]
+        found["vertices"].append([[x, z, -y] for x, y, z in places])
+        shown.to_mesh_clear()
+json.dump(found, open(out, "w"))
 """
 
 
-def check_in_blender(blender, path, frames, person_id, folder):
-    script, out = folder / "read.py", folder / "places.json"
-    script.write_text(BLENDER)
-    done = subprocess.run([blender, "--background", "--python", str(script), "--", str(path), str(out)],
+def blender_finds(blender, path, times_s, folder):
+    script, out = folder / "read.py", folder / f"{path.name}.json"
+    script.write_text(IN_BLENDER)
+    done = subprocess.run([blender, "--background", "--python", str(script), "--", str(path), json.dumps(times_s), str(out)],
                           capture_output=True, text=True)
     expect(out.exists(), f"Blender: {done.stdout[-500:]} {done.stderr[-500:]}")
-    places = {name: [numpy.array(p) for p in all_of] for name, all_of in json.loads(out.read_text()).items()}
-    return compare_bones("BVH in Blender", places, frames, person_id, 5)
+    return json.loads(out.read_text())
+
+
+def three_finds(modules, path, times_s, folder):
+    out = folder / "three.json"
+    subprocess.run(["node", str(Path(__file__).parent / "three.mjs"), modules, str(path), json.dumps(times_s), str(out)],
+                   check=True)
+    return json.loads(out.read_text())
+
+
+def sampled_times(frames, person_id):
+    """Times of the sampled frames, from the person's first body on."""
+    times = [f["track_time_s"] for f in frames if any(p["id"] == person_id and p.get("body") for p in f["people"])]
+    bodies = bodies_of(frames, person_id)
+    first = next(i for i, f in enumerate(frames) if f["track_time_s"] == times[0])
+    return [frames[first + i]["track_time_s"] - times[0] for i in sampled(frames, person_id) if bodies[i]]
 
 
 def main():
@@ -199,6 +278,7 @@ def main():
     parser.add_argument("program", type=Path)
     parser.add_argument("source")
     parser.add_argument("--blender")
+    parser.add_argument("--three")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
@@ -222,8 +302,15 @@ def main():
         print("COCO:", check_coco(folder / "coco.json", frames), "people")
         print("k4abt:", check_k4abt(folder / "k4abt.json", frames), "frames")
         print("glTF:", check_glb(folder / "p.glb", frames, person_id))
+        times_s = sampled_times(frames, person_id)
         if arguments.blender:
-            print("BVH in Blender:", check_in_blender(arguments.blender, folder / "p.bvh", frames, person_id, folder))
+            found = blender_finds(arguments.blender, folder / "p.bvh", [], folder)
+            print("BVH in Blender:", compare_bones("BVH in Blender", found["bones"], frames, person_id, 5))
+            found = blender_finds(arguments.blender, folder / "p.glb", times_s, folder)
+            print("glTF in Blender:", compare_surface("glTF in Blender", found["vertices"], frames, person_id))
+        if arguments.three:
+            found = three_finds(arguments.three, folder / "p.glb", times_s, folder)
+            print("glTF in three.js:", compare_surface("glTF in three.js", found, frames, person_id))
     return 0
 
 
