@@ -55,6 +55,8 @@ def of_the_sources(source):
                 yield f"{name}:{number}", found[1]
         if path.name == "package.json" and "version" in json.loads(text):
             yield name, json.loads(text)["version"]
+        if path.name == "package.xml":
+            yield name, re.search(f"<version>{NUMBER}</version>", text)[1]
 
 
 def number_of(version):
