@@ -19,6 +19,7 @@
 #include "io/recordings/message_fields.h"
 #include "io/recordings/open_recording.h"
 #include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius::cli {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportArguments {
-  std::string people, to, format, joints;
+  std::string people, to, format, joints, images;
   std::optional<int> person;
   bool on_floor = true;
   RecordOptions record;
@@ -90,6 +91,29 @@ std::size_t find_set(const PeopleRecord& record, const ExportArguments& argument
   return std::ranges::count(record.sets, format.joints) > 0 ? record.find_set(format.joints) : 0;
 }
 
+/// Finds the picture of each frame in a folder, by its name. The pixels of people are those of depth.
+void find_pictures(const std::string& folder, PeopleRecord& record) {
+  for (RecordedFrame& frame : record.frames) {
+    for (const char* ending : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
+      if (frame.picture.empty() && fs::exists(fs::path(folder) / (frame.name + ending))) {
+        frame.picture = frame.name + ending;
+      }
+    }
+    if (frame.picture.empty()) {
+      throw Error(fmt::format("{}: no picture of frame {}, expected {}.png or .jpg", folder, frame.name, frame.name));
+    }
+  }
+  const RecordedFrame& first = record.frames.front();
+  const std::string path = (fs::path(folder) / first.picture).string();
+  const ColourImage picture = read_colour(path);
+  if (picture.width() != first.camera.width || picture.height() != first.camera.height) {
+    throw Error(
+        fmt::format("{}: {}x{} pixels, expected {}x{} as depth has, whose pixels people are given in; detect "
+                    "--out DIR --save colour writes such pictures",
+                    path, picture.width(), picture.height(), first.camera.width, first.camera.height));
+  }
+}
+
 std::vector<File> make_files(const ExportArguments& arguments, const ExportFormat& format) {
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
@@ -98,6 +122,7 @@ std::vector<File> make_files(const ExportArguments& arguments, const ExportForma
     record.notes.push_back(arguments.people +
                            ": no floor is known; places are those of the camera, however it is tilted");
   }
+  if (!arguments.images.empty()) find_pictures(arguments.images, record);
   if (!arguments.quiet) {
     for (const std::string& note : record.notes) say("note: " + note);
   }
@@ -124,6 +149,7 @@ void run_export(const ExportArguments& arguments) {
   const ExportFormat& format = format_of(arguments);
   if (arguments.person && !format.of_one)
     throw UsageError("--person goes with trc, bvh and glb: the others have all people");
+  if (!arguments.images.empty() && format.name != "coco") throw UsageError("--images goes with coco");
   for (const File& file : make_files(arguments, format)) {
     write_file_atomically(file.path, file.bytes);
     if (!arguments.quiet) say(fmt::format("{}: {} bytes", file.path, file.bytes.size()));
@@ -153,6 +179,12 @@ void add_export(CLI::App& program) {
       ->add_option("--joints", arguments->joints,
                    "Joint set of csv, trc and coco (default: coco17 for coco, else k4abt32)")
       ->type_name("SET");
+  command
+      ->add_option(
+          "--images", arguments->images,
+          "Folder with the frames' pictures, PNG or JPEG, which coco names (default: FRAME.png, as detect --out "
+          "DIR --save colour writes them into DIR/colour)")
+      ->type_name("DIR");
   command->add_option("--person", arguments->person, "Only the person with this id, in trc, bvh or glb")
       ->type_name("ID");
   add_places_flag(*command, "--frame", arguments->on_floor, "Whose places csv, trc, bvh and glb have");
@@ -170,7 +202,8 @@ Examples:
   vesalius detect frames/ --track --json people.jsonl
   vesalius export people.jsonl --to people.csv
   vesalius export people.jsonl --to walk.bvh --person 1
-  vesalius export session.mcap --to keypoints.json --format coco)");
+  vesalius export session.mcap --to keypoints.json --format coco
+  vesalius export people.jsonl --to keypoints.json --format coco --images frames/rgb)");
   command->callback([arguments] { run_export(*arguments); });
 }
 

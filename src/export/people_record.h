@@ -20,6 +20,7 @@ struct RecordedPerson : TrackedPerson {
 
 struct RecordedFrame {
   std::string name;
+  std::string picture;  ///< name of a file that shows it; empty where nobody says so
   double time_s = 0.0;
   Camera camera;
   std::optional<FloorView> floor;

@@ -135,8 +135,10 @@ std::string to_coco(const PeopleRecord& record, std::size_t set) {
   Json images = Json::array(), annotations = Json::array();
   for (std::size_t f = 0; f < record.frames.size(); ++f) {
     const RecordedFrame& frame = record.frames[f];
-    images.push_back(
-        {{"id", f + 1}, {"file_name", frame.name}, {"width", frame.camera.width}, {"height", frame.camera.height}});
+    images.push_back({{"id", f + 1},
+                      {"file_name", frame.picture.empty() ? frame.name + ".png" : frame.picture},
+                      {"width", frame.camera.width},
+                      {"height", frame.camera.height}});
     for (const RecordedPerson& person : frame.people) {
       Json keypoints = Json::array();
       int visible = 0;

@@ -24,7 +24,8 @@ std::string to_trc(const PeopleRecord& record, std::size_t set, int person, cons
 std::vector<int> people_in(const PeopleRecord& record);
 
 /// All people as COCO's keypoints: images, annotations with boxes, one category with the set's joints. Pixels are those
-/// of the depth picture. Visibility is 2 for what is observed, 1 for what is predicted and 0 for the rest.
+/// of the depth picture; a frame without a picture is to be found as its name with .png. Visibility is 2 for what is
+/// observed, 1 for what is predicted and 0 for the rest.
 std::string to_coco(const PeopleRecord& record, std::size_t set);
 
 /// All people as the offline processor of the Azure Kinect samples writes them: positions in millimetres in the depth

@@ -52,7 +52,11 @@ TEST(ToTrc, HasTheRowsOfOnePersonWithYUp) {
 }
 
 TEST(ToCoco, HasKeypointsInPixelsWithTheirVisibility) {
-  const json coco = json::parse(to_coco(test::people(), 1));
+  PeopleRecord record = test::people();
+  record.frames[1].picture = "1.jpg";
+  const json coco = json::parse(to_coco(record, 1));
+  EXPECT_EQ(coco.at("images").at(0).at("file_name"), "a,0.png") << "as detect --save colour writes it";
+  EXPECT_EQ(coco.at("images").at(1).at("file_name"), "1.jpg");
   EXPECT_EQ(coco.at("images").size(), kFrames);
   EXPECT_EQ(coco.at("annotations").size(), 2U * kFrames - 2);
   const json& first = coco.at("annotations").at(0);

@@ -7,6 +7,7 @@
 #include "io/files/data_file.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {
@@ -44,6 +45,26 @@ TEST_F(Export, WritesEveryFormat) {
   EXPECT_THAT(exported(from, "p.glb"), StartsWith("glTF"));
   EXPECT_THAT(exported(from, "coco.json", " --format coco"), HasSubstr("\"num_keypoints\":"));
   EXPECT_THAT(exported(from, "k4abt.json", " --format k4abt"), HasSubstr("\"joint_names\":[\"PELVIS\""));
+}
+
+TEST_F(Export, NamesPicturesThatOpen) {
+  const std::string from = path("people.jsonl");
+  const Outcome run = run_program("detect " + frames() + " -q --json " + from + " --out " + path("found") +
+                                  " --save colour -m " + model());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string images = " --format coco --images " + path("found/colour");
+  const std::string coco = exported(from, "coco.json", images);
+  EXPECT_EQ(coco, exported(from, "usual.json", " --format coco")) << "the usual names are those of the pictures";
+  constexpr const char* kKey = "\"file_name\":\"";
+  const std::size_t at = coco.find(kKey);
+  ASSERT_NE(at, coco.npos);
+  const std::size_t begin = at + std::string(kKey).size();
+  const std::string name = coco.substr(begin, coco.find('"', begin) - begin);
+  EXPECT_TRUE(std::filesystem::is_regular_file(path("found/colour/" + name))) << name;
+  refused(from + " --to " + path("x.json") + " --format coco --images " + path("nothing"), 1, "no picture of frame");
+  refused(from + " --to " + path("x.csv") + " --images " + path("found"), 2, "--images goes with coco");
+  write_png(ColourImage(8, 6), path("found/colour/" + name));
+  refused(from + " --to " + path("x.json") + images, 1, "pixels, expected ");
 }
 
 TEST_F(Export, TakesThePeopleOfARecording) {

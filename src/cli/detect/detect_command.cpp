@@ -200,7 +200,8 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
   add("--out", outputs.folder, "DIR", "Folder for pictures, created if missing");
   add("--save", outputs.save, "WHAT",
       "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of body "
-      "parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled PLY); video")
+      "parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled PLY); "
+      "colour (on the grid of depth, or depth where there is none); video")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(kSaveKinds));

@@ -100,6 +100,9 @@ void DetectOutputs::write_pictures(const Frame& frame, const TrackedFrame& found
     if (wants("overlay")) write_png(overlay, path("overlay", frame, ".png"));
     if (video_) video_->write(overlay);
   }
+  if (wants("colour")) {
+    write_png(frame.colour.empty() ? draw_depth(frame.depth) : frame.colour, path("colour", frame, ".png"));
+  }
   if (wants("parts")) {
     write_png(draw_labels(part_label_map(people, width, height), frame.depth, body_, true),
               path("parts", frame, ".png"));

@@ -31,7 +31,7 @@ struct OutputRequest {
   bool lines() const { return !quiet && json.empty() && folder.empty() && udp.empty() && osc.empty(); }
 };
 
-inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "video"};
+inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "colour", "video"};
 
 /// Throws UsageError for an invalid request.
 void check(const OutputRequest& request);
