@@ -63,7 +63,9 @@ class Stamps {
     // A camera's clock may count from anything; ROS 2 counts from 1970.
     if (is_live_ && wanted != "frame") return nanoseconds(frame.arrived_s.value_or(now_s()));
     const double own_s = frame.time_s.value_or(frames_ / arguments_.rate);
-    if (wanted != "now") return nanoseconds(own_s);
+    // Others put what they get beside transforms of now; who goes through a file frame by frame wants the same each
+    // time.
+    if (wanted == "frame" || (wanted.empty() && arguments_.every_frame)) return nanoseconds(own_s);
     if (!later_s_) later_s_ = now_s() - own_s;
     return nanoseconds(own_s + *later_s_);
   }

@@ -65,7 +65,8 @@ void add_ros2_flags(CLI::App& command, Ros2Flags& flags) {
   add("--camera-pose", flags.camera_pose, "FRAME,X,Y,Z,ROLL,PITCH,YAW",
       "Publish in /tf_static where the camera stands: metres and radians, of a camera that looks along x");
   add("--stamps", flags.stamps, "WHAT",
-      "Times of messages: frame, those of the frames (default, but for cameras), or now")
+      "Times of messages: now (default), those at which frames are played, of a camera those of arrival; or frame, the "
+      "frames' own (default with --every-frame)")
       ->check(CLI::IsMember({"frame", "now"}));
   add("--id-prefix", flags.id_prefix, "TEXT", "Before the number in the names of bodies")->capture_default_str();
   command.add_flag("--whole-cloud", flags.whole_cloud, "All pixels in ~/points, not those of people alone")
