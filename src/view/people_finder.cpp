@@ -51,8 +51,12 @@ PeopleFinder::PeopleFinder(Settings settings, bool track, MergePeople merge)
 
 void PeopleFinder::take_over(const Settings& settings) {
   const Settings before = std::exchange(settings_, settings);
+  if (before != settings_ && are_tracks_others(before->options, settings_->options)) begin_anew();
+}
+
+void PeopleFinder::begin_anew() {
+  if (!tracks_) return;
   const PeopleOptions& options = settings_->options;
-  if (before == settings_ || !tracks_ || !are_tracks_others(before->options, options)) return;
   const Detector& detector = settings_->detector;
   tracks_->restart(options.track, detector.appearance(),
                    std::make_shared<const BodyFitter>(detector.body(), options.fit));

@@ -61,6 +61,9 @@ class PeopleFinder {
   /// detector and the tracker throw.
   ViewedFrame find(const std::shared_ptr<const PlayedFrame>& played, const Settings& settings, bool with_stages);
 
+  /// Follows people anew, under ids that nobody had: what comes next is of another source.
+  void begin_anew();
+
  private:
   void take_over(const Settings& settings);
   std::vector<Person> detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const;

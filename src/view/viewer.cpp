@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -24,6 +25,7 @@
 #include "vesalius/error.h"
 #include "view/frame_message.h"
 #include "view/people_finder.h"
+#include "view/source_opener.h"
 #include "view/viewer_messages.h"
 
 namespace vesalius {
@@ -109,14 +111,25 @@ class Guarded {
   T value_;
 };
 
+/// A source and what plays it.
+struct Playing {
+  Playing(std::shared_ptr<FrameSource> frames, const PlayerOptions& options, Player::Outputs outputs)
+      : source(std::move(frames)), player(*source, options, std::move(outputs)) {}
+
+  const std::shared_ptr<FrameSource> source;
+  Player player;
+};
+
 /// A frame to be looked at, once more if `again` is true.
 struct Job {
+  int source = 0;  ///< number of the source that it is of
   std::shared_ptr<const PlayedFrame> played;
   Settings settings;
   Clock::time_point arrived;
   bool again = false;
 };
 struct Found {
+  int source = 0;
   ViewedFrame viewed;
   Clock::time_point arrived;
   bool again = false;
@@ -124,6 +137,7 @@ struct Found {
 
 /// What the next job is made of.
 struct Now {
+  int source = 0;
   Settings settings;
   std::shared_ptr<const PlayedFrame> last;  ///< the frame that was shown last
 };
@@ -138,32 +152,40 @@ struct Figures {
 }  // namespace
 
 /// Four threads are at work: the player's in `look_at`, the server's in the handlers, the finder's in `find_all`, the
-/// caller's in `run`. What only one of them needs is a variable there (the finder, the recording); frames, settings and
-/// people pass from one to the next in queues.
+/// caller's in `run`, which also puts another source in place of the one that is played. What only one of them needs is
+/// a variable there (the finder, the recording); frames, settings and people pass from one to the next in queues.
 class Viewer::Session {
  public:
   Session(FrameSource& source, Model model, const PeopleOptions& options, const ViewerOptions& viewer)
-      : source_(source),
-        model_(std::move(model)),
+      : model_(std::move(model)),
         first_options_(options),
-        facts_{viewer.source, viewer.model, viewer.folder, viewer.track},
-        rate_(viewer.player.rate),
+        player_options_(viewer.player),
+        track_(viewer.track),
         merges_(viewer.merge != nullptr),
         say_(viewer.say),
-        now_({settings(options), nullptr}),
-        player_(source, viewer.player, outputs()),
+        facts_({viewer.source, viewer.model, viewer.folder, viewer.track}),
+        now_({0, settings(options), nullptr}),
+        playing_(std::make_shared<Playing>(std::shared_ptr<FrameSource>(&source, [](FrameSource*) {}), viewer.player,
+                                           outputs())),
         server_(viewer.web, handlers()) {
-    const auto finder = std::make_shared<PeopleFinder>(now_.get().settings, facts_.track, viewer.merge);
+    if (!viewer.choice.empty()) {
+      SourceChoice choice(viewer.choice);
+      facts_.with([&](ViewerFacts& facts) { facts.choice = choice.folder(); });
+      opener_.emplace(std::move(choice), viewer.reconnect,
+                      SourceOpener::Outputs{[this](const std::string& list) { server_.publish_text("sources", list); },
+                                            [this](const std::string& line) { tell(line); }});
+    }
+    const auto finder = std::make_shared<PeopleFinder>(now_.get().settings, track_, viewer.merge);
     worker_ = quiet_thread([this, finder] { find_all(*finder); });
     server_.start();
-    player_.start();
+    playing()->player.start();
   }
 
   /// The player tells the server and the server the player; so its thread ends before either is gone.
   ~Session() {
     jobs_.close();
     found_.close();
-    player_.stop();
+    playing()->player.stop();
   }
 
   std::uint16_t port() const { return server_.port(); }
@@ -176,25 +198,31 @@ class Viewer::Session {
       try {
         if (recording && found && !found->again) recording->add_frame(found->viewed, model_.body);
         if (recording && !wanted) {
-          recording->close();
+          complete(*recording);
           recording.reset();
         }
-        if (!recording && wanted) recording.emplace(facts_.folder, rate_);
+        if (!recording && wanted) recording.emplace(facts_.get().folder, player_options_.rate);
       } catch (const Error& e) {
         recording.reset();
         recording_wanted_ = false;
         failure = e.what();
-        say(failure);
-        if (say_) say_(failure);
+        tell(failure);
       }
       figures_.with([&](Figures& figures) {
         figures.state.recording = recording ? recording->path() : "";
         if (recording) figures.state.recorded = recording->frames();
       });
     };
+    int source = 0;
     Clock::time_point last_state;
     while (!stop() && !ended_by_.get()) {
-      const std::optional<Found> found = found_.pop(kPatience);
+      std::optional<Found> found = found_.pop(kPatience);
+      if (std::optional<OpenedSource> opened = opener_ ? opener_->take() : std::nullopt) {
+        recording_wanted_ = false;
+        record(found, false);
+        change_source(std::move(*opened), ++source);
+      }
+      if (found && found->source != source) found.reset();  // nobody is to take it for one of this source
       if (!found && Clock::now() < last_state + kStatePause) continue;
       if (found) publish(*found);
       record(found, recording_wanted_);
@@ -208,6 +236,48 @@ class Viewer::Session {
 
  private:
   using Wish = std::function<void(ClientWishes)>;
+
+  std::shared_ptr<Playing> playing() { return playing_.get(); }
+
+  /// Says a line on all pages and in the program's own place.
+  void tell(const std::string& line) {
+    say(line);
+    if (say_) say_(line);
+  }
+
+  void complete(PageRecording& recording) {
+    recording.close();
+    std::error_code unknown;
+    const std::filesystem::path path = std::filesystem::absolute(recording.path(), unknown).lexically_normal();
+    const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+    figures_.with([&](Figures& figures) {
+      figures.state.saved = SavedRecording{path.string(), recording.frames(), unknown ? 0 : bytes};
+    });
+  }
+
+  /// Plays another source from now on; `number` is its own.
+  void change_source(OpenedSource opened, int number) {
+    playing()->player.stop();  // nothing comes from the one before any more
+    PlayerOptions options = player_options_;
+    options.start_s = 0.0;
+    now_.with([number](Now& now) {
+      now.source = number;
+      now.last.reset();
+    });
+    const int after = figures_.with([](Figures& figures) {
+      figures.state.dropped = figures.missed = 0;
+      return figures.state.frames;
+    });
+    const auto next = std::make_shared<Playing>(std::move(opened.frames), options, outputs());
+    const auto before = playing_.with([&](auto& playing) { return std::exchange(playing, next); });
+    facts_.with([&](ViewerFacts& facts) {
+      facts.source = opened.name;
+      facts.after = after;
+    });
+    server_.publish_text("", hello_message(facts_.get(), model_.body));
+    server_.publish_text("state", state());
+    next->player.start();
+  }
 
   Player::Outputs outputs() {
     return {[this](PlayedFrame played) { look_at(std::move(played)); }, [this](const std::string& why) { say(why); },
@@ -238,23 +308,27 @@ class Viewer::Session {
 
   PeopleOptions current_options() { return now_.get().settings->options; }
 
-  std::string options_now() { return options_message(current_options(), first_options_, facts_.track); }
+  std::string options_now() { return options_message(current_options(), first_options_, track_); }
 
   std::vector<std::string> greet() {
     look_again();
-    return {hello_message(facts_, model_.body), options_now(), state()};
+    return {hello_message(facts_.get(), model_.body), options_now(), state()};
   }
 
   /// Does what a page asks for.
   std::optional<std::string> obey(const std::string& text, const Wish& wish) {
     using Action = std::function<void(const Json&)>;
+    const std::shared_ptr<Playing> shown = playing();
+    Player& player = shown->player;
     const std::map<std::string, Action> actions{
-        {"play", [this](const Json&) { player_.play(); }},
-        {"pause", [this](const Json&) { player_.pause(); }},
-        {"step", [this](const Json& c) { player_.step(c.at("by").get<double>() < 0.0 ? -1 : 1); }},
-        {"seek", [this](const Json& c) { player_.seek(c.at("to_s").get<double>()); }},
-        {"speed", [this](const Json& c) { player_.set_speed(c.at("times").get<double>()); }},
-        {"repeat", [this](const Json& c) { player_.set_repeat(c.at("on").get<bool>()); }},
+        {"play", [&](const Json&) { player.play(); }},
+        {"pause", [&](const Json&) { player.pause(); }},
+        {"step", [&](const Json& c) { player.step(c.at("by").get<double>() < 0.0 ? -1 : 1); }},
+        {"seek", [&](const Json& c) { player.seek(c.at("to_s").get<double>()); }},
+        {"speed", [&](const Json& c) { player.set_speed(c.at("times").get<double>()); }},
+        {"repeat", [&](const Json& c) { player.set_repeat(c.at("on").get<bool>()); }},
+        {"list", [this](const Json& c) { expect_taken(opener().list(c.at("folder").get<std::string>())); }},
+        {"open", [this](const Json& c) { expect_taken(opener().open(c.at("source").get<std::string>())); }},
         {"stages",
          [&](const Json& c) {
            const bool on = c.at("on").get<bool>();
@@ -283,6 +357,16 @@ class Viewer::Session {
     return std::nullopt;
   }
 
+  /// Throws Error where pages may not open sources.
+  SourceOpener& opener() {
+    if (!opener_) throw Error("several cameras are shown as one, so that no other source can be opened");
+    return *opener_;
+  }
+
+  static void expect_taken(bool taken) {
+    if (!taken) throw Error("sources are still being opened, expected one after the other");
+  }
+
   void change_options(const PeopleOptions& options) {
     const Settings changed = settings(options);
     now_.with([&](Now& now) { now.settings = changed; });
@@ -299,12 +383,12 @@ class Viewer::Session {
 
   void look_at(PlayedFrame played) {
     const auto frame = std::make_shared<const PlayedFrame>(std::move(played));
-    const int missed = source_.missed();
+    const int missed = playing()->source->missed();
     const int dropped = now_.with([&](Now& now) {
       now.last = frame;
       // Nobody would see the people.
       if (server_.clients() == 0 && !recording_wanted_) return 0;
-      return jobs_.push_newest({frame, now.settings, frame->arrived, false});
+      return jobs_.push_newest({now.source, frame, now.settings, frame->arrived, false});
     });
     figures_.with([&](Figures& figures) {
       figures.missed = missed;
@@ -314,28 +398,32 @@ class Viewer::Session {
 
   /// Looks at the last frame once more, where no other will come soon or somebody wants more of it.
   void look_again(bool surely = false) {
-    const bool playing = player_.state().playing;
+    const bool plays = playing()->player.state().playing;
     now_.with([&](const Now& now) {
-      if (!now.last || (playing && !surely && Clock::now() < now.last->arrived + kSoon)) return;
-      jobs_.push_newest({now.last, now.settings, Clock::now(), true});
+      if (!now.last || (plays && !surely && Clock::now() < now.last->arrived + kSoon)) return;
+      jobs_.push_newest({now.source, now.last, now.settings, Clock::now(), true});
     });
   }
 
   void find_all(PeopleFinder& finder) {
     TurnHint hint(now_.get().settings->detector);
-    const auto tell = [this](const std::optional<std::string>& note) {
-      if (note) say(*note);
-      if (note && say_) say_(*note);
+    const auto tell_hint = [this](const std::optional<std::string>& note) {
+      if (note) tell(*note);
     };
+    int source = 0;
     while (!jobs_.finished()) {
       const std::optional<Job> job = jobs_.pop(kPatience);
       if (!job) {
-        if (!player_.state().playing) tell(hint.finish());
+        if (!playing()->player.state().playing) tell_hint(hint.finish());
         continue;
       }
       try {
+        if (std::exchange(source, job->source) != job->source) {
+          finder.begin_anew();
+          hint = TurnHint(job->settings->detector);
+        }
         ViewedFrame viewed = finder.find(job->played, job->settings, server_.clients_for_details() > 0);
-        tell(hint.add(*viewed.frame, merges_ || !viewed.people.people.empty()));
+        tell_hint(hint.add(*viewed.frame, merges_ || !viewed.people.people.empty()));
         const Clock::time_point now = Clock::now();
         const double result_ms = std::chrono::duration<double, std::milli>(now - job->arrived).count();
         if (viewed.frame->arrived_s) viewed.latency_ms = result_ms;
@@ -343,7 +431,7 @@ class Viewer::Session {
           figures.state.frames = viewed.number;
           figures.result.add_time(now, result_ms);
         });
-        if (!found_.push({std::move(viewed), job->arrived, job->again})) return;
+        if (!found_.push({source, std::move(viewed), job->arrived, job->again})) return;
       } catch (const std::exception& e) {  // no frame may end the program
         say(e.what());
       }
@@ -357,7 +445,7 @@ class Viewer::Session {
   }
 
   std::string state() {
-    const PlayerState player = player_.state();
+    const PlayerState player = playing()->player.state();
     const int clients = server_.clients();
     const ViewerState now = figures_.with([clients](Figures& figures) {
       ViewerState state = figures.state;
@@ -371,22 +459,23 @@ class Viewer::Session {
     return state_message(now, player);
   }
 
-  FrameSource& source_;
   const Model model_;
   const PeopleOptions first_options_;
-  const ViewerFacts facts_;
-  const double rate_;
+  const PlayerOptions player_options_;
+  const bool track_;
   const bool merges_;  ///< whether other cameras' people are there, without anybody's guesses
   const std::function<void(const std::string&)> say_;
 
+  Guarded<ViewerFacts> facts_;
   Guarded<Now> now_;
   Guarded<Figures> figures_;
   Guarded<std::exception_ptr> ended_by_;  ///< why a camera gives nothing more
   std::atomic<bool> recording_wanted_ = false;
   FrameQueue<Job> jobs_{1};
   FrameQueue<Found> found_{1};
-  Player player_;
+  Guarded<std::shared_ptr<Playing>> playing_;
   WebServer server_;
+  std::optional<SourceOpener> opener_;
   std::jthread worker_;
 };
 

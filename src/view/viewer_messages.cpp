@@ -82,6 +82,8 @@ std::string hello_message(const ViewerFacts& facts, const BodyModel& body) {
                   {"model", facts.model},
                   {"folder", facts.folder},
                   {"track", facts.track},
+                  {"choice", facts.choice.empty() ? Json() : Json(facts.choice)},
+                  {"after", facts.after},
                   {"bones", bones_json()},
                   {"body", std::move(known)}});
 }
@@ -89,6 +91,10 @@ std::string hello_message(const ViewerFacts& facts, const BodyModel& body) {
 std::string state_message(const ViewerState& state, const PlayerState& player) {
   Json span;
   if (player.span) span = {player.span->first_s, player.span->last_s};
+  Json saved;
+  if (state.saved) {
+    saved = {{"path", state.saved->path}, {"frames", state.saved->frames}, {"bytes", state.saved->bytes}};
+  }
   return text_of({{"type", "state"},
                   {"live", player.live},
                   {"playing", player.playing},
@@ -104,7 +110,8 @@ std::string state_message(const ViewerState& state, const PlayerState& player) {
                   {"page_ms", optional_json(state.page_ms)},
                   {"pages", state.clients},
                   {"recording", state.recording},
-                  {"recorded", state.recorded}});
+                  {"recorded", state.recorded},
+                  {"saved", std::move(saved)}});
 }
 
 std::string options_message(const PeopleOptions& options, const PeopleOptions& first, bool track) {
@@ -115,6 +122,25 @@ std::string options_message(const PeopleOptions& options, const PeopleOptions& f
 }
 
 std::string notice_message(const std::string& text) { return text_of({{"type", "notice"}, {"text", text}}); }
+
+std::string sources_message(const ChoiceList& list, const std::vector<SensorInfo>& cameras) {
+  Json entries = Json::array();
+  for (const ChoiceEntry& entry : list.entries) {
+    entries.push_back({{"name", entry.name}, {"folder", entry.is_folder}, {"opens", entry.opens}});
+    if (entry.bytes) entries.back()["bytes"] = *entry.bytes;
+  }
+  Json plugged_in = Json::array();
+  for (const SensorInfo& camera : cameras) plugged_in.push_back({{"source", camera.id}, {"name", camera.name}});
+  return text_of({{"type", "sources"},
+                  {"folder", list.folder},
+                  {"entries", std::move(entries)},
+                  {"left_out", list.left_out},
+                  {"cameras", std::move(plugged_in)}});
+}
+
+std::string no_sources_message(const std::string& folder, const std::string& why) {
+  return text_of({{"type", "sources"}, {"folder", folder}, {"error", why}});
+}
 
 void set_option(PeopleOptions& options, const std::string& name, const std::string& value_json) {
   const Json value = Json::parse(value_json);

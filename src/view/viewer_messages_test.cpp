@@ -93,7 +93,26 @@ TEST(ViewerMessages, StateTellsWhatIsKnown) {
   EXPECT_EQ(with.at("span_s"), (json{1.0, 3.5}));
   EXPECT_EQ(with.at("page_ms"), 12.35);
   EXPECT_EQ(with.at("result_ms"), nullptr);
+  EXPECT_EQ(with.at("saved"), nullptr);
   EXPECT_EQ(json::parse(state_message({}, {})).at("span_s"), nullptr);
+}
+
+TEST(ViewerMessages, StateTellsWhereTheLastRecordingLies) {
+  ViewerState state;
+  state.saved = SavedRecording{"/here/a.mcap", 12, 3456};
+  EXPECT_EQ(json::parse(state_message(state, {})).at("saved"),
+            (json{{"path", "/here/a.mcap"}, {"frames", 12}, {"bytes", 3456}}));
+}
+
+TEST(ViewerMessages, SourcesTellWhatCanBeOpened) {
+  const ChoiceList list{"a", {{"b.mcap", false, true, 5}, {"c", true, false, {}}}, 3};
+  const json told = json::parse(sources_message(list, {{"openni2:1", "Xtion"}}));
+  EXPECT_EQ(told.at("folder"), "a");
+  EXPECT_EQ(told.at("entries").at(0), (json{{"name", "b.mcap"}, {"folder", false}, {"opens", true}, {"bytes", 5}}));
+  EXPECT_EQ(told.at("entries").at(1), (json{{"name", "c"}, {"folder", true}, {"opens", false}}));
+  EXPECT_EQ(told.at("left_out"), 3);
+  EXPECT_EQ(told.at("cameras").at(0), (json{{"source", "openni2:1"}, {"name", "Xtion"}}));
+  EXPECT_EQ(json::parse(no_sources_message("x", "why")).at("error"), "why");
 }
 
 TEST(ViewerMessages, HelloDescribesTheBody) {
@@ -103,6 +122,9 @@ TEST(ViewerMessages, HelloDescribesTheBody) {
   EXPECT_EQ(hello.at("body").at("links").size(), 24U);
   EXPECT_EQ(hello.at("source"), "frames/");
   EXPECT_EQ(hello.at("track"), false);
+  EXPECT_EQ(hello.at("choice"), nullptr);
+  EXPECT_EQ(json::parse(hello_message({"", "", ".", true, "/home/recordings"}, paper_body())).at("choice"),
+            "/home/recordings");
   EXPECT_EQ(hello.at("bones").at(0), json({{"name", "pelvis"}, {"parent", -1}}));
 }
 

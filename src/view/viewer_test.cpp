@@ -9,6 +9,7 @@
 
 #include "io/files/test_files.h"
 #include "io/recordings/test_recorded.h"
+#include "io/sources/write_frames.h"
 #include "stream/test_crossing.h"
 #include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
@@ -284,7 +285,11 @@ TEST(Viewer, RecordsWhatIsShown) {
     ASSERT_TRUE(page.receive_text("\"recording\":\"" + folder.path()));
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(next_frame(page).is_null());
     page.send(R"({"do":"record","on":false})");
-    ASSERT_TRUE(page.receive_text("\"recording\":\"\""));
+    const auto state = page.receive_text("\"recording\":\"\"");
+    ASSERT_TRUE(state);
+    const json saved = json::parse(state->bytes).at("saved");
+    EXPECT_EQ(saved.at("bytes"), std::filesystem::file_size(saved.at("path").get<std::string>()));
+    EXPECT_GE(saved.at("frames"), 1);
   }
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) files.push_back(entry.path().string());
@@ -297,6 +302,97 @@ TEST(Viewer, RecordsWhatIsShown) {
   ASSERT_TRUE(frame);
   EXPECT_GT(frame->depth[0], first);
   EXPECT_EQ(frame->depth(5, 5), 3000);
+}
+
+/// Frames of two people who cross, as a folder.
+void write_crossing(const std::string& folder) {
+  const test::Crossing crossing;
+  const auto writer = make_frame_writer(FrameFormat::folder, folder);
+  for (const LabelledFrame& one : crossing.frames()) writer->write(one.frame);
+  writer->close();
+}
+
+// Labels: threads
+TEST(Viewer, OpensAnotherSource) {
+  const test::TemporaryFolder folder;
+  write_crossing(folder / "walk");
+  ViewerOptions options = viewer_options(true, folder.path());
+  options.choice = folder.path();
+  const auto viewer = run_crossing(true, options);
+  Page page(viewer->port());
+  const auto hello = page.receive_text("\"hello\"");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ(json::parse(hello->bytes).at("choice"), std::filesystem::canonical(folder.path()).string());
+  EXPECT_THAT(people_in(next_frame(page)), testing::ElementsAre("1new", "2new"));
+  page.send(R"({"do":"record","on":true})");
+  ASSERT_TRUE(page.receive_text("\"recording\":\"" + folder.path()));
+  page.send(R"({"do":"step","by":1})");
+  ASSERT_TRUE(page.receive_text("\"recorded\":1"));
+
+  page.send(R"({"do":"list","folder":""})");
+  const auto list = page.receive_text("\"sources\"");
+  ASSERT_TRUE(list);
+  EXPECT_THAT(list->bytes, HasSubstr(R"({"name":"walk","folder":true,"opens":true})"));
+
+  page.send(R"({"do":"open","source":"walk"})");
+  const auto other = page.receive_text("\"hello\"");
+  ASSERT_TRUE(other);
+  const std::string path = std::filesystem::canonical(folder / "walk").string();
+  EXPECT_EQ(json::parse(other->bytes).at("source"), path);
+  json frame = next_frame(page);  // one of before may have been on its way
+  while (!frame.is_null() && frame.at("number") <= json::parse(other->bytes).at("after")) frame = next_frame(page);
+  EXPECT_EQ(name_of(frame), "0");
+  EXPECT_THAT(people_in(frame), testing::ElementsAre("3new", "4new")) << "nobody's ids again";
+  const auto state = page.receive_text(R"("recording":"")");
+  ASSERT_TRUE(state);
+  const json saved = json::parse(state->bytes).at("saved");
+  EXPECT_EQ(saved.at("frames"), 1);
+  EXPECT_EQ(open_source(saved.at("path"))->size(), 1) << "complete";
+  page.send(R"({"do":"seek","to_s":0.5})");
+  EXPECT_FALSE(frame_named(page, "15").is_null());
+}
+
+// Labels: threads
+TEST(Viewer, GoesOnWhereASourceCannotBeOpened) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "bad.mcap", "nothing that was recorded");
+  std::filesystem::create_directory(folder / "empty");
+  ViewerOptions options = viewer_options(true, ".");
+  options.choice = folder.path();
+  const auto viewer = run_crossing(true, options);
+  Page page(viewer->port());
+  ASSERT_FALSE(frame_named(page, "0").is_null());
+  for (const auto& [wish, why] :
+       std::vector<std::pair<std::string, std::string>>{{"bad.mcap", "bad.mcap: "},
+                                                        {"empty", "empty: no frames"},
+                                                        {"../", "a path with"},
+                                                        {"/etc", "an absolute path"},
+                                                        {"openni2:9", "openni2:9: not plugged in"}}) {
+    page.send(json({{"do", "open"}, {"source", wish}}).dump());
+    const auto notice = page.receive_text("\"notice\"");
+    ASSERT_TRUE(notice) << wish;
+    EXPECT_THAT(notice->bytes, testing::AllOf(HasSubstr(why), testing::Not(HasSubstr("\\n")))) << wish;
+  }
+  page.send(R"({"do":"list","folder":"../"})");
+  const auto refused = page.receive_text("\"sources\"");
+  ASSERT_TRUE(refused);
+  EXPECT_THAT(json::parse(refused->bytes).at("error"), HasSubstr("a path with"));
+  page.send(R"({"do":"step","by":1})");
+  EXPECT_THAT(people_in(frame_named(page, "1")), testing::ElementsAre("1new", "2new")) << "the same people as before";
+}
+
+TEST(Viewer, OpensNothingWhereItMayNot) {
+  const auto viewer = run_crossing(true);
+  Page page(viewer->port());
+  for (const char* command : {R"({"do":"list","folder":""})", R"({"do":"open","source":"walk"})"}) {
+    page.send(command);
+    const auto notice = page.receive_text("\"notice\"");
+    ASSERT_TRUE(notice) << command;
+    EXPECT_THAT(notice->bytes, HasSubstr("no other source can be opened"));
+  }
+  ViewerOptions options = viewer_options(true, ".");
+  options.choice = "/no/such/folder";
+  EXPECT_THROW(run_crossing(true, options), Error);
 }
 
 TEST(Viewer, SaysWhenItCannotRecord) {

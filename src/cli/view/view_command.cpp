@@ -42,7 +42,7 @@ struct ViewArguments {
   DetectorFlags detector;
   std::string host = "127.0.0.1";
   int port = 8080;
-  std::string folder = ".";
+  std::string folder;
   double rate = kUsualRate;
   int threads = 0;
   bool paused = false;
@@ -99,7 +99,23 @@ void open_browser(const std::string& address) {
 
 void check_folder(const std::string& folder) {
   std::error_code error;
-  if (!fs::is_directory(folder, error)) throw Error(folder + ": no such folder, expected one for recordings");
+  if (!folder.empty() && !fs::is_directory(folder, error)) {
+    throw Error(folder + ": no such folder, expected one for recordings");
+  }
+}
+
+/// Returns the folder below which the page may open other sources: that which was asked for, else that in which the
+/// source lies.
+std::string choice_of(const ViewArguments& arguments) {
+  const std::string& name = arguments.source.name();
+  if (!arguments.folder.empty()) return arguments.folder;
+  if (is_camera(name)) return ".";
+  std::error_code error;
+  const fs::path path = fs::canonical(path_of_source(name), error);
+  if (error) return ".";
+  // Not the whole machine, because frames lie in a folder at its root.
+  const fs::path around = path.parent_path();
+  return around == path.root_path() && fs::is_directory(path, error) ? path.string() : around.string();
 }
 
 ViewerOptions viewer_options(const ViewArguments& arguments) {
@@ -112,7 +128,9 @@ ViewerOptions viewer_options(const ViewArguments& arguments) {
   options.player.playing = !arguments.paused;
   options.say = [](const std::string& line) { say("vesalius: " + line); };
   options.track = !arguments.no_track;
-  options.folder = arguments.folder;
+  options.folder = arguments.folder.empty() ? "." : arguments.folder;
+  if (!arguments.merge.asked()) options.choice = choice_of(arguments);
+  options.reconnect = arguments.source.options().reconnect;
   options.source = arguments.source.name();
   options.model = fs::path(arguments.detector.model()).filename().string();
   return options;
@@ -168,7 +186,12 @@ void add_page_flags(CLI::App& command, ViewArguments& arguments) {
       "Address to listen at. Any but this machine's own lets others in who have the printed address with its token; "
       "0.0.0.0 is all");
   add("--port", arguments.port, "N", "Port to listen at; 0 = any that is free")->check(CLI::Range(0, 65535));
-  add("--folder", arguments.folder, "DIR", "Folder for what the page records");
+  command
+      .add_option("--folder", arguments.folder,
+                  "Folder for what the page records, and below which it may open other recordings and folders of "
+                  "frames (default: this folder, and that in which SOURCE lies)")
+      ->type_name("DIR")
+      ->group(group);
   command.add_flag("--paused", arguments.paused, "Begin with the first frame and wait")->group(group);
   command.add_flag("--no-browser", arguments.no_browser, "Do not open a browser")->group(group);
 }
@@ -187,7 +210,8 @@ void add_view(CLI::App& program) {
   command->add_flag("-q,--quiet", arguments->quiet, "Print the address and errors only");
   command->footer(R"(
 People are followed over the frames. The page shows the point cloud with skeletons, bodies and trails, the people and
-their numbers, the stages of the method and every option of detector and tracking. Nothing leaves this machine, and no file of it is served.
+their numbers, the stages of the method and every option of detector and tracking. It can open other sources, below
+--folder alone. Nothing leaves this machine.
 
 Examples:
   vesalius view frames/
