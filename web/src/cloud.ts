@@ -1,6 +1,8 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { FleshSurface } from './flesh';
+import { AXIS_COLOURS, Marks } from './marks';
+import { Measure } from './measure';
 import { Rgb, css, depthRange, personColour } from './palette';
 import { Body, CameraFacts, Found, Frame, Person, Xyz } from './protocol';
 import { Skeletons, isSeen } from './skeleton';
@@ -18,6 +20,8 @@ const DASH_M = 0.03;           // of a predicted limb, and the gap after it
 const ROD_M = 0.011;           // radius of a limb
 const TRAIL_M = 0.02;          // radius of a trail where it is newest
 const FLESH_OPACITY = 0.55;
+const AXIS_ROD_M = 0.004;      // radius of an axis of a bone
+const REACH_PX = 8;            // from a click to the points that are meant
 const FLOOR_STEPS = 12;        // of half a metre
 
 /** From the optical frame (x right, y down, z forward) to that of the view (x right, y up, z back). */
@@ -160,7 +164,7 @@ function pale(colour: Rgb): Rgb {
   return colour.map((value) => Math.round(value + 0.45 * (255 - value))) as Rgb;
 }
 
-/** A name that stands beside a person. */
+/** A name that stands beside a person, or at a joint. */
 interface Tag {
   element: HTMLElement;
   at: THREE.Vector3;
@@ -198,6 +202,9 @@ export class Cloud {
     private readonly names: HTMLElement,
     private readonly skeletons: Skeletons,
     private readonly memory: TrackMemory,
+    private readonly marks: Marks,
+    private readonly measure: Measure,
+    choose: (xyz: Xyz | null) => void,
   ) {
     const context = canvas.getContext('webgl2', { antialias: true });
     if (!context) throw new Error('no WebGL 2');
@@ -256,7 +263,46 @@ export class Cloud {
     this.controls.addEventListener('change', () => this.draw());
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener('keydown', (event) => this.turnByKey(event));
+    this.listenForClicks(choose);
     this.resetView();
+  }
+
+  /** A click is what does not turn the view; Enter takes what is in its middle. */
+  private listenForClicks(choose: (xyz: Xyz | null) => void): void {
+    const { canvas } = this;
+    let began = [0, 0];
+    canvas.addEventListener('pointerdown', (event) => (began = [event.clientX, event.clientY]));
+    canvas.addEventListener('click', (event) => {
+      const { left, top } = canvas.getBoundingClientRect();
+      if (Math.hypot(event.clientX - began[0], event.clientY - began[1]) > 4) return;
+      choose(this.pointAt(event.clientX - left, event.clientY - top));
+    });
+    canvas.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') choose(this.pointAt(canvas.clientWidth / 2, canvas.clientHeight / 2));
+    });
+  }
+
+  /** The reading that is in front at a place of the view; null where there is none. */
+  private pointAt(x: number, y: number): Xyz | null {
+    if (!this.frame) return null;
+    const { depth, found } = this.frame;
+    const { width, fx, fy, cx, cy } = found.camera;
+    const { clientWidth, clientHeight } = this.canvas;
+    this.camera.updateMatrixWorld();
+    const matrix = new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    const at = new THREE.Vector4();
+    const near: { xyz: Xyz; w: number; off: number }[] = [];
+    depth.forEach((mm, i) => {
+      if (mm === 0) return;
+      const z = mm * 1e-3;
+      const xyz: Xyz = [(((i % width) - cx) / fx) * z, ((Math.floor(i / width) - cy) / fy) * z, z];
+      at.set(xyz[0], -xyz[1], -xyz[2], 1).applyMatrix4(matrix);
+      const off = Math.hypot((0.5 + at.x / at.w / 2) * clientWidth - x, (0.5 - at.y / at.w / 2) * clientHeight - y);
+      if (at.w > 0 && off < REACH_PX) near.push({ xyz, w: at.w, off });
+    });
+    const front = Math.min(...near.map(({ w }) => w));
+    const [best] = near.filter(({ w }) => w < 1.02 * front + 0.02).sort((a, b) => a.off - b.off);
+    return best?.xyz ?? null;
   }
 
   private static floorGrid(): THREE.BufferGeometry {
@@ -284,6 +330,11 @@ export class Cloud {
     this.draw();
   }
 
+  /** The next frame is of another source: the view goes to its people. */
+  placeAnew(): void {
+    this.isPlaced = false;
+  }
+
   setBackground(colour: string): void {
     this.scene.background = new THREE.Color(colour);
     this.draw();
@@ -296,6 +347,12 @@ export class Cloud {
     this.floor.userData.wanted = shown.floor;
     this.showPeople();
     this.showFloor();
+    this.draw();
+  }
+
+  /** Draws once more what marks and measure have now. */
+  showMarks(): void {
+    this.showPeople();
     this.draw();
   }
 
@@ -377,11 +434,13 @@ export class Cloud {
     if (this.frame && this.body) {
       for (const person of shownPeople(this.frame.found)) {
         this.addSkeleton(person);
+        this.addMarks(person);
         if (this.trails.group.visible) this.addTrail(person);
         if (this.flesh.visible) Cloud.addFlesh(person, this.frame, surface);
         if (this.boxes.visible) this.addBox(person, this.frame, corners, tints);
       }
     }
+    this.addMeasured();
     for (const copies of all) copies.end();
     this.showFlesh(surface);
     const box = new THREE.BufferGeometry();
@@ -414,6 +473,25 @@ export class Cloud {
       if (!top || at.y > top.y) top = at;
     }
     if (top) this.addTag(person, top.clone().add(new THREE.Vector3(0, 0.15, 0)));
+  }
+
+  /** Of everybody, or of the one who is chosen. */
+  private addMarks(person: Person): void {
+    if (this.selected >= 0 && this.selected !== numberOf(person)) return;
+    for (const { at, ends } of this.marks.axesOf(person)) {
+      ends.forEach((end, i) => Cloud.addLimb(this.rods, toView(at), toView(end), AXIS_ROD_M, AXIS_COLOURS[i], false));
+    }
+    for (const { xyz, text, isLeft } of this.marks.textsOf(person)) {
+      this.addText(text, isLeft ? 'mark left' : 'mark', toView(xyz));
+    }
+  }
+
+  private addMeasured(): void {
+    const points = this.measure.points.map(toView);
+    const white: Rgb = [255, 255, 255];
+    const place = new THREE.Matrix4();
+    for (const at of points) this.balls.add(place.makeScale(0.015, 0.015, 0.015).setPosition(at), white);
+    if (points.length === 2) Cloud.addLimb(this.rods, points[0], points[1], AXIS_ROD_M, white, false);
   }
 
   /** Where the trunk was, ever thinner; dashed where that is a guess. */
@@ -505,14 +583,20 @@ export class Cloud {
   }
 
   private addTag(person: Person, at: THREE.Vector3): void {
-    const element = document.createElement('span');
-    element.className = 'tag';
     const word = person.state === 'tracked' ? person.stance : (person.state ?? person.score.toFixed(2));
-    element.textContent = word === 'unknown' ? String(numberOf(person)) : `${numberOf(person)} · ${word}`;
+    const text = word === 'unknown' ? String(numberOf(person)) : `${numberOf(person)} · ${word}`;
+    const element = this.addText(text, 'tag', at);
     element.classList.toggle('hidden-person', isHidden(person));
     element.style.borderColor = css(personColour(numberOf(person)));
+  }
+
+  private addText(text: string, className: string, at: THREE.Vector3): HTMLElement {
+    const element = document.createElement('span');
+    element.className = className;
+    element.textContent = text;
     this.names.append(element);
     this.tags.push({ element, at });
+    return element;
   }
 
   private clearTags(): void {
@@ -633,7 +717,7 @@ export class Cloud {
     for (const tag of this.tags) {
       at.copy(tag.at).project(this.camera);
       tag.element.hidden = at.z > 1;
-      tag.element.style.transform = `translate(${(0.5 + at.x / 2) * width}px, ${(0.5 - at.y / 2) * height}px) translate(-50%, -100%)`;
+      tag.element.style.translate = `${(0.5 + at.x / 2) * width}px ${(0.5 - at.y / 2) * height}px`;
     }
   }
 

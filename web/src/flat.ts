@@ -1,6 +1,9 @@
 import type { Colouring } from './cloud';
+import { Over } from './flat_marks';
+import { Marks } from './marks';
+import { Measure } from './measure';
 import { Rgb, css, depthColour, depthRange, personColour } from './palette';
-import { BACKGROUND, Body, Frame, Person } from './protocol';
+import { BACKGROUND, Body, Frame, Person, Px, Xyz } from './protocol';
 import { Skeletons, isSeen, project } from './skeleton';
 import { TrackMemory, coloursByIndex, isHidden, numberOf, shownPeople } from './track';
 
@@ -100,17 +103,29 @@ export class Flat {
   private colouring: Colouring = 'person';
   private showsBoxes = false;
   private showsTrails = true;
+  private cross: Px | null = null;  // that arrow keys move, while the picture has the focus
   selected = -1;
 
+  /** `choose` receives the place of a pixel that is clicked, null where it has none. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly readout: HTMLElement,
     private readonly skeletons: Skeletons,
     private readonly memory: TrackMemory,
+    private readonly marks: Marks,
+    private readonly measure: Measure,
+    private readonly choose: (xyz: Xyz | null) => void,
   ) {
     this.context = canvas.getContext('2d') as CanvasRenderingContext2D;
-    canvas.addEventListener('pointermove', (event) => this.read(event));
-    canvas.addEventListener('pointerdown', (event) => this.read(event));
+    const at = (event: PointerEvent, act: (pixel: Px) => void): void => {
+      const pixel = this.pixelAt(event);
+      if (pixel) act(pixel);
+    };
+    canvas.addEventListener('pointermove', (event) => at(event, (pixel) => this.read(pixel)));
+    canvas.addEventListener('pointerdown', (event) => at(event, (pixel) => this.read(pixel)));
+    canvas.addEventListener('click', (event) => at(event as PointerEvent, (pixel) => this.choose(this.placeOf(pixel))));
+    canvas.addEventListener('keydown', (event) => this.moveCross(event));
+    canvas.addEventListener('blur', () => this.showCross(null));
   }
 
   setBody(body: Body, colours: Rgb[]): void {
@@ -136,7 +151,7 @@ export class Flat {
     this.draw();
   }
 
-  private draw(): void {
+  draw(): void {
     const { frame, body, context } = this;
     if (!frame || !body) return;
     const { width, height } = frame.found.camera;
@@ -160,6 +175,12 @@ export class Flat {
       if (this.showsTrails) this.drawTrail(person, frame);
       this.drawPerson(person, frame);
     }
+    const above = new Over(context, frame.found.camera, this.scale());
+    for (const person of shownPeople(frame.found)) {
+      if (this.selected < 0 || this.selected === numberOf(person)) above.marks(person, this.marks);
+    }
+    above.measured(this.measure.points);
+    if (this.cross) above.cross(this.cross);
   }
 
   private drawPerson(person: Person, frame: Frame): void {
@@ -220,15 +241,50 @@ export class Flat {
     context.fillText(text, u + 0.3 * size, top + size);
   }
 
-  /** Tells what is under the pointer. */
-  private read(event: PointerEvent): void {
+  /** The pixel under the pointer; the canvas shows the picture as large as fits into it. */
+  private pixelAt(event: PointerEvent): Px | null {
+    if (!this.frame) return null;
+    const area = this.canvas.getBoundingClientRect();
+    const { width, height } = this.frame.found.camera;
+    const scale = Math.min(area.width / width, area.height / height);
+    const u = Math.floor((event.clientX - area.left - (area.width - scale * width) / 2) / scale);
+    const v = Math.floor((event.clientY - area.top - (area.height - scale * height) / 2) / scale);
+    return u < 0 || v < 0 || u >= width || v >= height ? null : [u, v];
+  }
+
+  /** The place that a pixel shows; null where the camera has no reading. */
+  private placeOf([u, v]: Px): Xyz | null {
+    if (!this.frame) return null;
+    const { width, fx, fy, cx, cy } = this.frame.found.camera;
+    const z = this.frame.depth[v * width + u] * 1e-3;
+    return z === 0 ? null : [((u - cx) / fx) * z, ((v - cy) / fy) * z, z];
+  }
+
+  private showCross(cross: Px | null): void {
+    this.cross = cross;
+    if (cross) this.read(cross);
+    this.draw();
+  }
+
+  private moveCross(event: KeyboardEvent): void {
+    if (!this.frame) return;
+    const { width, height } = this.frame.found.camera;
+    const [u, v] = this.cross ?? [Math.floor(width / 2), Math.floor(height / 2)];
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!by && event.key !== 'Enter') return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!by) return this.choose(this.placeOf([u, v]));
+    const far = event.shiftKey ? 1 : 8;
+    const within = (value: number, most: number): number => Math.min(Math.max(value, 0), most - 1);
+    this.showCross([within(u + far * by[0], width), within(v + far * by[1], height)]);
+  }
+
+  /** Tells what a pixel shows. */
+  private read([u, v]: Px): void {
     const { frame, body } = this;
     if (!frame || !body) return;
-    const area = this.canvas.getBoundingClientRect();
-    const { width, height } = frame.found.camera;
-    const u = Math.floor(((event.clientX - area.left) / area.width) * width);
-    const v = Math.floor(((event.clientY - area.top) / area.height) * height);
-    if (u < 0 || v < 0 || u >= width || v >= height) return;
+    const { width } = frame.found.camera;
     const pixel = v * width + u;
     const mm = frame.depth[pixel];
     const person = frame.found.people.find(({ index }) => index === frame.labels.people[pixel]);

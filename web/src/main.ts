@@ -1,10 +1,14 @@
+import { SourceDialog, sizeText } from './choice';
 import { Cloud, Colouring } from './cloud';
 import { Connection } from './connection';
 import { DEPTH_COLOURS, Flat } from './flat';
+import { FullScreen } from './full_screen';
+import { Marks } from './marks';
+import { Measure } from './measure';
 import { OptionFields } from './options';
 import { partColours } from './palette';
 import { PeopleList, showEvents } from './people';
-import { Body, Frame, Hello, TextMessage, ViewState } from './protocol';
+import { Body, Command, Frame, Hello, TextMessage, ViewState, Xyz } from './protocol';
 import { SkeletonChoice, Skeletons } from './skeleton';
 import { StagePictures } from './stages';
 import { TrackMemory, numberOf, shownPeople } from './track';
@@ -22,6 +26,7 @@ const THEMES = ['auto', 'light', 'dark'];
 let body: Body | null = null;
 let frame: Frame | null = null;
 let state: ViewState | null = null;
+let after = 0;  // number of the last frame that is of another source
 let selected = -1;
 let seekTo: number | null = null;  // where the slider was moved to, until that is sent
 let holdsSlider = false;
@@ -54,11 +59,14 @@ function announce(text: string): void {
 
 const skeletons = new Skeletons();
 const memory = new TrackMemory();
+const marks = new Marks(skeletons);
+const measure = new Measure();
+let isMeasuring = false;
 
 /** The 3-D view; none where the browser has no WebGL 2. */
 function makeCloud(): Cloud | null {
   try {
-    return new Cloud(get<HTMLCanvasElement>('cloud'), get('names'), skeletons, memory);
+    return new Cloud(get<HTMLCanvasElement>('cloud'), get('names'), skeletons, memory, marks, measure, takePoint);
   } catch {
     get('no-cloud').textContent = 'This browser has no WebGL 2, so there is no 3-D view: the flat picture shows the people.';
     get('no-cloud').hidden = false;
@@ -68,20 +76,27 @@ function makeCloud(): Cloud | null {
 }
 
 const cloud = makeCloud();
-const flat = new Flat(get<HTMLCanvasElement>('picture'), get('readout'), skeletons, memory);
+const flat = new Flat(get<HTMLCanvasElement>('picture'), get('readout'), skeletons, memory, marks, measure, takePoint);
 const people = new PeopleList(get('list'), get('nobody'), get('details'), choose);
 const stages = new StagePictures(get('stages'));
 const options = new OptionFields(get('option-list'), get<HTMLInputElement>('filter'), (option, value) =>
   connection.send({ do: 'set', option, value }),
 );
 cloud?.setDepthColours(DEPTH_COLOURS);
+const sources = new SourceDialog(
+  (command) => connection.send(command),
+  (name) => notice(`opening ${name} …`),
+);
+const fullScreen = new FullScreen((isOn) => get('full-screen').setAttribute('aria-pressed', String(isOn)));
 
 const connection = new Connection({
   async frame(shown) {
+    if (shown.number <= after) return;
     const before = frame;
     frame = shown;
     memory.add(shown.found);
     flat.show(shown);
+    tellMeasured();
     showEvents(get('events'), memory.events, clock, state?.span_s?.[0] ?? 0);
     get('happened').hidden = memory.events.length === 0;
     if (body) {
@@ -117,6 +132,9 @@ function receive(message: TextMessage): void {
     case 'options':
       options.show(message.options);
       break;
+    case 'sources':
+      sources.receive(message);
+      break;
     case 'notice':
       notice(message.text);
       break;
@@ -126,6 +144,7 @@ function receive(message: TextMessage): void {
 /** Begins anew: the program may be another, with another body. */
 function begin(hello: Hello): void {
   body = hello.body;
+  after = hello.after;
   frame = null;
   memory.clear();
   skeletons.setBody(hello.body, hello.bones);
@@ -135,9 +154,15 @@ function begin(hello: Hello): void {
     if (option) option.disabled = !hello.track;
   }
   if (!hello.track && skeletonChoice.selectedOptions[0]?.disabled) skeletonChoice.value = 'parts';
+  options.showModel(hello.model);
+  get('open').hidden = hello.choice === null;
+  sources.begin(hello.choice ?? '');
+  measure.points = [];
+  cloud?.placeAnew();
   choose(-1);
   setSkeleton();
   showPartColours();
+  showMeasured();
 }
 
 function clock(seconds: number): string {
@@ -158,6 +183,9 @@ function showState(now: ViewState): void {
   ];
   if (now.recording) words.push(`recording ${now.recording}: ${now.recorded} frames`);
   get('status').textContent = words.join(' · ');
+  const { saved } = now;
+  const where = saved && !now.recording ? `recorded ${saved.frames} frame${saved.frames === 1 ? '' : 's'}, ${sizeText(saved.bytes)}: ${saved.path}` : '';
+  if (get('saved').textContent !== where) get('saved').textContent = where;
   get('play').textContent = now.playing ? 'Pause' : 'Play';
   get('record').setAttribute('aria-pressed', String(now.recording !== ''));
   get('record').textContent = now.recording ? 'Stop recording' : 'Record';
@@ -222,8 +250,44 @@ function isChecked(id: string): boolean {
 
 function showParts(): void {
   const [boxes, trails] = [isChecked('show-boxes'), isChecked('show-trails')];
+  Object.assign(marks, { names: isChecked('show-names'), axes: isChecked('show-axes'), angles: isChecked('show-angles') });
   cloud?.setShown({ boxes, trails, bodies: isChecked('show-bodies'), floor: isChecked('show-floor') });
   flat.setShown(boxes, trails);
+}
+
+/** Up is another direction as soon as the floor is known. */
+function tellMeasured(): void {
+  const text = measure.text(frame?.found ?? null, isMeasuring);
+  if (get('measured').textContent !== text) get('measured').textContent = text;
+}
+
+function showMeasured(): void {
+  document.body.classList.toggle('measuring', isMeasuring);
+  get('measure').setAttribute('aria-pressed', String(isMeasuring));
+  tellMeasured();
+  cloud?.showMarks();
+  flat.draw();
+}
+
+function setMeasuring(is: boolean): void {
+  isMeasuring = is;
+  measure.points = [];
+  showMeasured();
+}
+
+/** Takes a point that was clicked. */
+function takePoint(xyz: Xyz | null): void {
+  if (!isMeasuring) return;
+  if (!xyz) return notice('The camera has no reading there.');
+  measure.add(xyz);
+  showMeasured();
+}
+
+/** Clears what is measured, then ends measuring, then leaves the full screen. */
+function escape(): void {
+  if (measure.points.length > 0) setMeasuring(true);
+  else if (isMeasuring) setMeasuring(false);
+  else fullScreen.leave();
 }
 
 const systemIsDark = matchMedia('(prefers-color-scheme: dark)');
@@ -291,6 +355,13 @@ const KEYS: Record<string, () => void> = {
   b: () => get('show-bodies').click(),
   r: () => cloud?.resetView(),
   v: () => cloud?.viewOfCamera(),
+  n: () => get('show-names').click(),
+  x: () => get('show-axes').click(),
+  a: () => get('show-angles').click(),
+  d: () => setMeasuring(!isMeasuring),
+  f: () => fullScreen.toggle(),
+  o: () => get('open').hidden || sources.show(),
+  Escape: escape,
   s: snapshot,
   m: () => connection.send({ do: 'record', on: !state?.recording }),
   '?': () => get<HTMLDialogElement>('help').showModal(),
@@ -325,7 +396,8 @@ function listen(): void {
   colouring.addEventListener('change', setColouring);
   partColouring.addEventListener('change', showPartColours);
   skeletonChoice.addEventListener('change', setSkeleton);
-  for (const id of ['show-boxes', 'show-trails', 'show-bodies', 'show-floor']) get(id).addEventListener('change', showParts);
+  const shown = ['boxes', 'trails', 'bodies', 'floor', 'names', 'axes', 'angles'];
+  for (const name of shown) get(`show-${name}`).addEventListener('change', showParts);
   get('view-reset').addEventListener('click', () => cloud?.resetView());
   get('view-camera').addEventListener('click', () => cloud?.viewOfCamera());
   get('play').addEventListener('click', playOrPause);
@@ -348,6 +420,9 @@ function listen(): void {
   for (const end of ['pointerup', 'pointercancel']) document.addEventListener(end, () => (holdsSlider = false));
   get('record').addEventListener('click', () => connection.send({ do: 'record', on: !state?.recording }));
   get('snapshot').addEventListener('click', snapshot);
+  get('open').addEventListener('click', () => sources.show());
+  get('measure').addEventListener('click', () => setMeasuring(!isMeasuring));
+  get('full-screen').addEventListener('click', () => fullScreen.toggle());
   get('keys').addEventListener('click', KEYS['?']);
   get('theme').addEventListener('click', () => {
     theme = THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length];
@@ -383,5 +458,7 @@ Object.assign(window, {
     trail: (id: number) => frame?.found.people.filter((person) => numberOf(person) === id).flatMap((person) => memory.trail(person)) ?? [],
     counts: () => cloud?.counts() ?? null,
     draw: () => cloud?.drawNow(),
+    send: (command: Command) => connection.send(command),
+    measured: () => measure.points,
   },
 });

@@ -2,8 +2,25 @@ import { OptionFacts } from './protocol';
 
 type Value = number | boolean | string;
 
+interface First {
+  name: string;
+  title: string;
+  help: string;
+}
+
+/** Those that people turn, in their words. They stand first, all others below them in their groups. */
+const FIRST: First[] = [
+  { name: 'refine.min-score', title: 'Threshold', help: 'How sure it must be that somebody is there: more shows fewer people.' },
+  { name: 'track.hidden', title: 'Following', help: 'How long somebody who is out of sight is kept.' },
+  { name: 'track.smooth-cutoff', title: 'Smoothing', help: 'How fast smoothed joints change: less is calmer, and later.' },
+  { name: 'grid.step', title: 'Speed', help: 'Only every so many pixels are looked at: more is faster, and coarser; 0 chooses.' },
+];
+
 /** A field for every option of the detector. */
 export class OptionFields {
+  private readonly first = document.createElement('div');
+  private readonly model = document.createElement('div');
+  private readonly modelName = document.createElement('output');
   private readonly fields = new Map<string, { row: HTMLElement; input: HTMLInputElement; reset: HTMLButtonElement }>();
 
   constructor(
@@ -12,6 +29,19 @@ export class OptionFields {
     private readonly set: (option: string, value: Value) => void,
   ) {
     filter.addEventListener('input', () => this.applyFilter());
+    this.first.id = 'options-first';
+    const title = document.createElement('strong');
+    title.textContent = 'Model';
+    const help = document.createElement('small');
+    help.textContent = 'What tells body parts apart. Another one is named when the program is started: --model.';
+    this.model.className = 'option';
+    this.model.append(title, this.modelName, help);
+    this.first.append(this.model);
+    place.append(this.first);
+  }
+
+  showModel(name: string): void {
+    this.modelName.textContent = name;
   }
 
   show(options: OptionFacts[]): void {
@@ -54,21 +84,33 @@ export class OptionFields {
       input.value = String(option.default);
       this.set(option.name, option.default);
     });
+    const place = FIRST.findIndex(({ name }) => name === option.name);
     const label = document.createElement('label');
     const name = document.createElement('span');
-    name.textContent = option.name.slice(option.name.indexOf('.') + 1);
+    name.textContent = FIRST[place]?.title ?? option.name.slice(option.name.indexOf('.') + 1);
     label.append(name, input);
     const help = document.createElement('small');
     const range = option.type === 'number' || option.type === 'integer' ? ` ${option.low} to ${option.high}` : '';
-    help.textContent = `${option.help}${range}${option.unit ? ` ${option.unit}` : ''}`;
+    help.textContent = `${FIRST[place]?.help ?? option.help}${range}${option.unit ? ` ${option.unit}` : ''}`;
     const row = document.createElement('div');
     row.className = 'option';
     row.dataset.name = option.name;
     row.append(label, reset, help);
-    this.group(option.name).append(row);
+    if (place >= 0) this.addFirst(row, place);
+    else this.group(option.name).append(row);
     const field = { row, input, reset };
     this.fields.set(option.name, field);
     return field;
+  }
+
+  /** Puts a row in its place among the first, the model last; its name in the program stands below it. */
+  private addFirst(row: HTMLElement, place: number): void {
+    row.dataset.place = String(place);
+    const rows = [...this.first.children] as HTMLElement[];
+    const code = document.createElement('code');
+    code.textContent = row.dataset.name ?? '';
+    row.lastElementChild?.append(' ', code);
+    this.first.insertBefore(row, rows.find((other) => Number(other.dataset.place ?? FIRST.length) > place) ?? null);
   }
 
   private group(name: string): HTMLElement {

@@ -1,5 +1,6 @@
 import { css, personColour } from './palette';
 import { Body, Found, FoundPoint, Frame, Person } from './protocol';
+import { angleText, anglesOf, inWords } from './marks';
 import { ToldEvent, isHidden, numberOf, shownPeople } from './track';
 
 function element<K extends keyof HTMLElementTagNameMap>(
@@ -29,10 +30,20 @@ function yawText(person: Person): string {
   return `yaw ${degrees}° (${facing})`;
 }
 
+const WAITING = 'waiting for the floor';
+
+/** How somebody holds the body, which takes a floor to tell. */
+function stanceText(person: Person, found: Found): string {
+  if (person.stance !== 'unknown') return person.stance ?? '';
+  return found.floor ? '' : WAITING;
+}
+
 /** What is known of a person over time. */
-function trackText(person: Person, now_s: number): string {
+function trackText(person: Person, found: Found): string {
+  const now_s = found.track_time_s ?? 0;
   const words = [person.state === 'hidden' ? `hidden for ${(now_s - (person.seen_s ?? now_s)).toFixed(1)} s` : person.state];
-  if (person.stance && person.stance !== 'unknown') words.push(person.stance);
+  const stance = stanceText(person, found);
+  if (stance) words.push(stance);
   if (person.velocity_m_s) words.push(`${Math.hypot(...person.velocity_m_s).toFixed(1)} m/s`);
   if (person.body) words.push(`${person.body.stature_m.toFixed(2)} m tall`);
   return words.join(' · ');
@@ -138,7 +149,7 @@ export class PeopleList {
     const z = distance(person);
     const seen = Object.values(person.parts).filter((part) => part.state === 'observed').length;
     name.textContent = `Person ${number}`;
-    overTime.textContent = person.state ? trackText(person, found.track_time_s ?? 0) : '';
+    overTime.textContent = person.state ? trackText(person, found) : '';
     facts.textContent = [
       `score ${person.score.toFixed(2)}`,
       z === null ? 'distance unknown' : `${z.toFixed(2)} m`,
@@ -160,6 +171,9 @@ export class PeopleList {
     }
     const title = details.querySelector('h2') as HTMLElement;
     title.textContent = `Person ${numberOf(person)}`;
+    const angles = details.querySelector('.angles') as HTMLElement;
+    const texts = anglesOf(person, choice.value.endsWith(SMOOTHED)).map((angle) => `${inWords(angle.name)} ${angleText(angle)}`);
+    angles.textContent = texts.length > 0 ? `Angles: ${texts.join(', ')}` : '';
     const points = this.points(person, choice.value);
     const rows = Object.entries(points).map(([name, point]) => {
       const xyz = point.xyz_m?.map((metres) => metres.toFixed(2)).join(', ') ?? '';
@@ -182,6 +196,7 @@ export class PeopleList {
     const head = element('tr', ['point', 'state', 'reliability', 'x, y, z in m'].map((text) => element('th', [text])));
     this.details.append(
       element('p', [element('h2'), choice], 'row'),
+      element('p', [], 'angles'),
       element('table', [element('thead', [head]), element('tbody')]),
     );
     return choice;

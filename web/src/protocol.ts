@@ -26,6 +26,8 @@ export type TrackState = 'new' | 'tracked' | 'hidden' | 'lost';
 export interface FittedBone {
   head_m: Xyz;
   tail_m: Xyz;
+  /** Unit quaternion: optical frame from the bone's. */
+  global_xyzw: [number, number, number, number];
   confidence: number;
   state: State;
 }
@@ -68,6 +70,8 @@ export interface Found {
   time_s: number | null;
   track_time_s?: number;
   events?: StanceEvent[];
+  /** The floor over time; null while none is known. */
+  floor?: { up: Xyz; height_m: number } | null;
   camera: CameraFacts;
   people: Person[];
 }
@@ -137,6 +141,10 @@ export interface Hello {
   model: string;
   folder: string;
   track: boolean;
+  /** Folder below which other sources may be opened; null where none may. */
+  choice: string | null;
+  /** Number of the last frame of the source before this one; it may come later than this message. */
+  after: number;
   bones: BoneFacts[];
   body: Body;
 }
@@ -158,6 +166,7 @@ export interface ViewState {
   pages: number;
   recording: string;
   recorded: number;
+  saved: { path: string; frames: number; bytes: number } | null;
 }
 
 export interface OptionFacts {
@@ -171,8 +180,26 @@ export interface OptionFacts {
   help: string;
 }
 
+export interface SourceEntry {
+  name: string;
+  folder: boolean;
+  opens: boolean;
+  bytes?: number;
+}
+
+/** What may be opened in a folder, or why that cannot be told. */
+export interface SourceList {
+  type: 'sources';
+  folder: string;
+  error?: string;
+  entries?: SourceEntry[];
+  left_out?: number;
+  cameras?: { source: string; name: string }[];
+}
+
 export type TextMessage =
   | Hello
+  | SourceList
   | ViewState
   | { type: 'options'; options: OptionFacts[] }
   | { type: 'notice'; text: string };
@@ -183,6 +210,8 @@ export type Command =
   | { do: 'seek'; to_s: number }
   | { do: 'speed'; times: number }
   | { do: 'repeat' | 'stages' | 'record'; on: boolean }
+  | { do: 'list'; folder: string }
+  | { do: 'open'; source: string }
   | { do: 'set'; option: string; value: number | boolean | string };
 
 /** Unpacks the binary message of a frame. */

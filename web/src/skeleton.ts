@@ -43,6 +43,13 @@ export class Skeletons {
     return drawn;
   }
 
+  /** What has a name at its place: parts where they are drawn, otherwise joints, which bones have at their heads. */
+  named(person: Person): { name: string; xyz: Xyz }[] {
+    const joints = (this.choice === 'smoothed' ? person.smoothed : undefined) ?? person.joints;
+    const points = (this.choice !== 'parts' && joints[DRAWN_SET]) || person.parts;
+    return Object.entries(points).flatMap(([name, { xyz_m }]) => (xyz_m ? [{ name, xyz: xyz_m }] : []));
+  }
+
   private chosen(person: Person): SkeletonLines | null {
     switch (this.choice) {
       case 'none':

@@ -1,6 +1,6 @@
 // The viewer in a real browser. Run by `./dev web`, or: node --test web/tests/
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
+import { mkdirSync, readFileSync, readdirSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -354,11 +354,267 @@ test('saves snapshots and recordings', async () => {
       await page.click('#record');
       await until(page, () => !window.vesalius.state().recording);
       const [file] = readdirSync(folder);
+      const where = await page.locator('#saved', { hasText: 'recorded 3 frames' }).innerText();
+      assert.ok(where.endsWith(join(folder, file)), where);
+      const [, number, unit] = where.match(/, ([\d.]+) (kB|MB):/);
+      const bytes = Number(number) * { kB: 1e3, MB: 1e6 }[unit];
+      assert.ok(Math.abs(bytes / statSync(join(folder, file)).size - 1) < 0.01, where);
       assert.match(run('detect', join(folder, file)), /person|people/);
     },
     ['--folder', folder],
   );
   remove();
+});
+
+/** A folder with a clip, a recording that is none, and links that lead out. */
+function sourcesToOpen() {
+  const { folder, remove } = newFolder();
+  mkdirSync(join(folder, 'below'));
+  run('convert', clip(), join(folder, 'below/clip'), '--to', 'folder', '-q');
+  writeFileSync(join(folder, 'bad.mcap'), 'nothing that was recorded');
+  symlinkSync(rooms, join(folder, 'out'));
+  return { folder, remove };
+}
+
+test('opens another source by keys, and goes on where one cannot be opened', async () => {
+  const { folder, remove } = sourcesToOpen();
+  await withPage(
+    async (page, view) => {
+      const before = (await shown(page)).people.map(({ id }) => id);
+      assert.ok(before.length > 0);
+      await page.keyboard.press('m');
+      await until(page, () => window.vesalius.state().recording);
+      await step(page);
+      await until(page, () => window.vesalius.state().recorded === 1);
+      const here = (await shown(page)).name;
+
+      const buttons = page.locator('#choice-sources button');
+      const entries = async () => (await buttons.allInnerTexts()).filter((text) => !text.startsWith('vesalius-'));
+      await page.keyboard.press('o');
+      await buttons.first().waitFor();
+      assert.deepEqual(await entries(), ['bad.mcap recording, 25 bytes', 'below/ folder'], 'not the link that leads out');
+      await page.locator('#choice-cameras li', { hasText: 'None' }).waitFor();
+      await page.screenshot({ path: join(pictures, 'choice.png') });
+      await page.keyboard.press('Enter');
+      await page.locator('#notices', { hasText: 'bad.mcap: ' }).waitFor();
+      assert.equal((await shown(page)).name, here);
+      assert.equal(await page.evaluate(() => window.vesalius.state().recording !== ''), true, 'the recording goes on');
+
+      for (const wish of ['/etc', '../', 'out', 'below/../../x']) {
+        await page.evaluate((source) => window.vesalius.send({ do: 'open', source }), wish);
+        await page.locator('#notices', { hasText: `${wish}: ` }).waitFor();
+        assert.equal((await shown(page)).name, here);
+      }
+
+      await page.keyboard.press('o');
+      await page.locator('#choice-sources button', { hasText: 'below/' }).focus();
+      await page.keyboard.press('Enter');
+      await page.locator('#choice-sources button', { hasText: 'clip' }).first().waitFor();
+      assert.deepEqual(await entries(), ['↑ the folder above', 'clip frames', 'look inside']);
+      await page.keyboard.press('Tab');
+      await page.keyboard.press('Enter');
+      await page.locator('#source', { hasText: join(folder, 'below/clip') }).waitFor();
+      await until(page, (name) => window.vesalius.frame() && window.vesalius.frame().found.frame !== name, here);
+      const { people } = await shown(page);
+      assert.ok(people.length > 0 && people.every(({ id }) => id > Math.max(...before)), 'nobody has an id of before');
+      const where = await page.locator('#saved', { hasText: 'recorded 1 frame,' }).innerText();
+      assert.match(run('detect', where.slice(where.indexOf(folder))), /person|people/);
+      await step(page);
+      const other = await open(browser, view.address);
+      await other.locator('#source', { hasText: 'below/clip' }).waitFor();
+      await other.context().close();
+    },
+    ['--folder', folder],
+    {},
+    null,
+    rooms,
+  );
+  remove();
+});
+
+test('shows names, axes and angles, of everybody or of one', async () => {
+  await withPage(
+    async (page) => {
+      for (let i = 0; i < 12; ++i) await step(page);
+      const texts = () => page.locator('.mark').allInnerTexts();
+      const rods = async () => (await page.evaluate(() => window.vesalius.counts())).rods;
+      const looks = new Set([`${await look(page, 'cloud')} ${await look(page, 'picture')}`]);
+      assert.deepEqual(await texts(), []);
+      const people = (await shown(page)).people.filter((person) => person.state !== 'lost');
+      const without = await rods();
+      await page.keyboard.press('x');
+      const bodies = people.filter((person) => person.body).length;
+      assert.equal(await rods(), without + 3 * 19 * bodies, 'three axes of each bone');
+      looks.add(`${await look(page, 'cloud')} ${await look(page, 'picture')}`);
+      await page.keyboard.press('x');
+      await page.keyboard.press('n');
+      const joints = people.flatMap((person) => Object.values(person.joints.nite15)).filter(({ xyz_m }) => xyz_m);
+      assert.equal((await texts()).length, joints.length);
+      assert.ok((await texts()).includes('left elbow'));
+      looks.add(`${await look(page, 'picture')}`);
+      await page.keyboard.press('n');
+      await page.keyboard.press('a');
+      looks.add(`${await look(page, 'picture')}`);
+      assert.equal(looks.size, 4);
+      const [person] = people;
+      await page.locator('#list button').first().click();
+      const { l_shoulder, l_elbow, l_hand } = person.joints.nite15;
+      const limb = (to) => to.xyz_m.map((value, i) => value - l_elbow.xyz_m[i]);
+      const [upper, fore] = [limb(l_shoulder), limb(l_hand)];
+      const dot = upper.reduce((sum, value, i) => sum + value * fore[i], 0);
+      const degrees = Math.round((180 / Math.PI) * Math.acos(dot / Math.hypot(...upper) / Math.hypot(...fore)));
+      const told = await page.locator('.angles').innerText();
+      assert.ok(new RegExp(`left elbow (≈ )?${degrees}°`).test(told), `${degrees}: ${told}`);
+      assert.ok((await texts()).some((text) => text.endsWith(`${degrees}°`)));
+      assert.ok((await texts()).length <= 8, 'those of the one who is chosen');
+      await page.screenshot({ path: join(pictures, 'angles.png') });
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
+});
+
+test('says that it waits for the floor', async () => {
+  await withPage(async (page) => {
+    assert.equal(await page.evaluate(() => window.vesalius.frame().found.floor), null);
+    assert.match(await page.locator('#list button').first().innerText(), /waiting for the floor/);
+  });
+});
+
+test('measures between two points of the picture and of the view', async () => {
+  await withPage(async (page) => {
+    const { camera, depth } = await page.evaluate(() => {
+      const { found, depth: all } = window.vesalius.frame();
+      return { camera: found.camera, depth: Array.from(all) };
+    });
+    const area = await page.locator('#picture').boundingBox();
+    const scale = Math.min(area.width / camera.width, area.height / camera.height);
+    const pixels = [[0.3, 0.5], [0.7, 0.8]].map(([across, down]) => {
+      const first = Math.round(down * camera.height) * camera.width + Math.round(across * camera.width);
+      const around = [-1, 0, 1].flatMap((v) => [-1, 0, 1].map((u) => v * camera.width + u));
+      const pixel = depth.findIndex((_, i) => i >= first && around.every((by) => depth[i + by] > 0));
+      return [pixel % camera.width, Math.floor(pixel / camera.width)];
+    });
+    const pixelOf = ([x, y, z]) => [Math.round((x / z) * camera.fx + camera.cx), Math.round((y / z) * camera.fy + camera.cy)];
+    const isReading = (place) => {
+      const [u, v] = pixelOf(place);
+      return Math.abs(depth[v * camera.width + u] / 1000 - place[2]) < 1e-6;
+    };
+    const click = ([u, v]) =>
+      page.mouse.click(
+        area.x + (area.width - scale * camera.width) / 2 + (u + 0.5) * scale,
+        area.y + (area.height - scale * camera.height) / 2 + (v + 0.5) * scale,
+      );
+    await click(pixels[0]);
+    assert.equal(await page.evaluate(() => window.vesalius.measured().length), 0, 'not while nobody measures');
+    await page.keyboard.press('d');
+    for (const pixel of pixels) await click(pixel);
+    const measured = await page.evaluate(() => window.vesalius.measured());
+    for (const [i, place] of measured.entries()) {
+      const off = pixelOf(place).map((at, axis) => Math.abs(at - pixels[i][axis]));
+      assert.ok(Math.max(...off) <= 1 && isReading(place), `${place} at ${pixelOf(place)}, clicked at ${pixels[i]}`);
+    }
+    const told = await page.locator('#measured').innerText();
+    const by = measured[1].map((value, i) => value - measured[0][i]);
+    const signed = (metres) => `${metres < 0 ? '−' : '+'}${Math.abs(metres).toFixed(3)}`;
+    const expected = `${Math.hypot(...by).toFixed(3)} m: across ${signed(by[0])}, up ${signed(-by[1])}, depth ${signed(by[2])} m`;
+    assert.ok(told.startsWith(expected), `${told}, expected ${expected}`);
+    await page.screenshot({ path: join(pictures, 'measured.png') });
+    await page.keyboard.press('Escape');
+    assert.equal(await page.evaluate(() => window.vesalius.measured().length), 0);
+
+    // The camera's view shows a pixel where the picture has it: in the middle the one that is on its axis.
+    await page.keyboard.press('v');
+    await page.focus('#cloud');
+    await page.keyboard.press('Enter');
+    const [middle] = await page.evaluate(() => window.vesalius.measured());
+    assert.ok(Math.hypot(middle[0] / middle[2], middle[1] / middle[2]) < 0.03, `${middle}`);
+    assert.ok(isReading(middle), 'a reading of the camera');
+    await page.focus('#picture');
+    for (const key of ['ArrowRight', 'ArrowDown', 'Enter']) await page.keyboard.press(key);
+    assert.match(await page.locator('#measured').innerText(), /^\d\.\d{3} m: /);
+    assert.match(await page.locator('#readout').innerText(), /^\(\d+, \d+\)/);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Escape');
+    assert.equal(await page.getAttribute('#measure', 'aria-pressed'), 'false');
+    assert.equal(await page.locator('#measured').innerText(), '');
+  });
+});
+
+test('fills the screen', async () => {
+  await withPage(async (page) => {
+    const size = () => page.locator('#view').boundingBox();
+    const before = await size();
+    await page.keyboard.press('f');
+    await until(page, () => document.fullscreenElement !== null);
+    assert.ok(!(await page.locator('#side').isVisible()));
+    const large = await size();
+    assert.ok(large.width > before.width && large.height > before.height);
+    assert.ok(await page.locator('#play').isVisible());
+    await page.click('#full-screen');
+    await until(page, () => document.fullscreenElement === null);
+    assert.ok(await page.locator('#side').isVisible());
+    assert.deepEqual(await size(), before);
+  });
+});
+
+test('the options that people turn come first', async () => {
+  await withPage(async (page) => {
+    await page.click('#tab-options');
+    const titles = await page.locator('#options-first label > span, #options-first strong').allInnerTexts();
+    assert.deepEqual(titles, ['Threshold', 'Following', 'Smoothing', 'Speed', 'Model']);
+    const codes = await page.locator('#options-first code').allInnerTexts();
+    assert.deepEqual(codes, ['refine.min-score', 'track.hidden', 'track.smooth-cutoff', 'grid.step']);
+    assert.equal(await page.locator('#options-first output').innerText(), 'default.model');
+    assert.ok(await page.locator('#options-first + details').isVisible(), 'all others below');
+    assert.equal(await page.locator('#option-list > details[open]').count(), 0);
+    await page.locator('#options-first input').nth(3).fill('4');
+    await page.keyboard.press('Enter');
+    await until(page, () => document.querySelector('[data-name="grid.step"]').classList.contains('changed'));
+  });
+});
+
+test('has no fault that axe finds', async () => {
+  const axe = readFileSync(join(root, 'web/node_modules/axe-core/axe.min.js'), 'utf8');
+  const audit = async (page, what) => {
+    await page.evaluate(axe);
+    const { violations, passes } = await page.evaluate(() => window.axe.run(document));
+    const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+    assert.deepEqual(found, [], what);
+    assert.ok(passes.length > 10, 'it looked');
+  };
+  const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+  for (const [colorScheme, screen] of [['light', {}], ['dark', {}], ['light', phone]]) {
+    await withPage(
+      async (page) => {
+        for (let i = 0; i < 6; ++i) await step(page);
+        for (const key of ['n', 'a', 'd']) await page.keyboard.press(key);
+        await audit(page, `${colorScheme}, people`);
+        await page.locator('#list button').first().click();
+        await audit(page, `${colorScheme}, one person`);
+        for (const tab of ['stages', 'options']) {
+          await page.click(`#tab-${tab}`);
+          if (tab === 'stages') await until(page, () => window.vesalius.frame().stages);
+          await audit(page, `${colorScheme}, ${tab}`);
+        }
+        await page.keyboard.press('o');
+        await page.locator('#choice-sources li').first().waitFor();
+        await audit(page, `${colorScheme}, sources`);
+        await page.keyboard.press('Escape');
+        await page.keyboard.press('?');
+        await audit(page, `${colorScheme}, keys`);
+        await page.keyboard.press('Escape');
+        await page.keyboard.press('f');
+        await audit(page, `${colorScheme}, full screen`);
+      },
+      [],
+      { colorScheme, ...screen },
+      null,
+      clip(),
+    );
+  }
 });
 
 test('pages do not take the stages from each other', async () => {
@@ -435,6 +691,10 @@ test('fits a phone, light and dark', async () => {
       async (page) => {
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(wide <= 390, `${wide} pixels wide`);
+        const top = async (id) => (await page.locator(`#${id}`).boundingBox()).y;
+        assert.ok((await top('flat')) < 10 && (await top('flat')) < (await top('space')), 'the picture comes first');
+        assert.ok(await page.locator('#play').isVisible());
+        assert.ok((await top('play')) < 844, 'the controls are in reach');
         await page.screenshot({ path: join(pictures, `phone-${colorScheme}.png`), fullPage: true });
       },
       [],
