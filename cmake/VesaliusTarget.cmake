@@ -13,7 +13,7 @@ endif()
 if(VESALIUS_SANITIZE)
   list(APPEND vesalius_options -fsanitize=${VESALIUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    list(APPEND vesalius_options -Wno-maybe-uninitialized)  # false ones of instrumented code, as GCC's manual says
+    list(APPEND vesalius_options -Wno-maybe-uninitialized -Wno-stringop-overread)  # false ones of instrumented code, as GCC's manual says
   endif()
   target_link_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE})
 endif()

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
