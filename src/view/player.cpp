@@ -125,6 +125,18 @@ void Player::set_repeat(bool repeat) {
   post({false, [this, repeat] { change([&](PlayerState& s) { s.repeat = repeat && s.span; }); }});
 }
 
+void Player::set_loop(std::optional<TimeSpan> loop) {
+  post({false, [this, loop] {
+          change([&](PlayerState& s) {
+            s.loop.reset();
+            if (!loop || !s.span) return;
+            const auto inside = [&](double time_s) { return std::clamp(time_s, s.span->first_s, s.span->last_s); };
+            const auto [first_s, last_s] = std::minmax(loop->first_s, loop->last_s);
+            s.loop = TimeSpan{inside(first_s), inside(last_s)};
+          });
+        }});
+}
+
 std::optional<Player::Command> Player::next_command(std::optional<Clock::time_point> until) {
   std::unique_lock lock(mutex_);
   const auto ready = [&] { return stopping_ || !commands_.empty(); };
@@ -173,7 +185,11 @@ void Player::run() {
       } else if (!waiting_) {
         waiting_ = read();
         if (!waiting_) end_of_source();
+      } else if (now.playing && ends_loop(now)) {
+        play_again(now.loop->first_s);
+        began_loop_ = true;
       } else if (now.playing) {
+        began_loop_ = false;
         show(*std::exchange(waiting_, std::nullopt));
       } else {
         waiting_.reset();
@@ -221,14 +237,25 @@ void Player::play_one() {
   }
 }
 
+/// Returns whether the frame that waits is the first beyond the loop. Where a loop has no frame, the one after it is
+/// shown.
+bool Player::ends_loop(const PlayerState& now) const {
+  return now.loop && !began_loop_ && now.at_s <= now.loop->last_s && waiting_->at_s > now.loop->last_s;
+}
+
+/// Moves so that the frame that is shown is shown as long as the others.
+void Player::play_again(double from_s) {
+  const std::optional<Clock::time_point> planned = planned_;
+  move_to(from_s);
+  planned_ = planned;
+}
+
 void Player::end_of_source() {
   const PlayerState now = state();
   // A single frame has been shown; where nothing was shown since the beginning, nothing will be.
   const bool has_more = now.span && now.span->last_s > now.span->first_s && shown_since_start_;
-  if (now.playing && now.repeat && has_more) {
-    const std::optional<Clock::time_point> planned = planned_;
-    move_to(now.span->first_s);
-    planned_ = planned;  // the last frame is shown as long as the others
+  if (now.playing && (now.repeat || now.loop) && has_more) {
+    play_again(now.loop ? now.loop->first_s : now.span->first_s);
     shown_since_start_ = false;
     return;
   }
@@ -242,6 +269,7 @@ void Player::end_of_source() {
 void Player::move_to(double time_s) {
   waiting_.reset();
   planned_.reset();
+  began_loop_ = false;
   source_.seek(time_s);
   index_ = frame_number(time_s);
 }

@@ -31,6 +31,7 @@ struct PlayerState {
   double speed = 1.0;
   double at_s = 0.0;             ///< place of the frame that was shown last
   std::optional<TimeSpan> span;  ///< none where one cannot move
+  std::optional<TimeSpan> loop;  ///< the stretch that is played again and again
 };
 
 struct PlayerOptions {
@@ -68,6 +69,9 @@ class Player {
   void seek(double time_s);      ///< shows the first frame not before this time, and goes on as before
   void set_speed(double times);  ///< 0.1 to 10
   void set_repeat(bool repeat);
+  /// Playing goes back to the stretch's first frame after its last, and at the end of the source, until there is no
+  /// stretch. Whoever seeks beyond it sees what is there. Its ends may come in either order.
+  void set_loop(std::optional<TimeSpan> loop);
 
   PlayerState state() const;
 
@@ -92,6 +96,8 @@ class Player {
   std::optional<Command> next_command(std::optional<Clock::time_point> until);
   std::optional<TimedFrame> read();
   void play_one();
+  bool ends_loop(const PlayerState& now) const;
+  void play_again(double from_s);
   void end_of_source();
   void move_to(double time_s);
   void step_back();
@@ -107,6 +113,7 @@ class Player {
   std::optional<TimedFrame> waiting_;         ///< read, not due yet
   std::optional<Clock::time_point> planned_;  ///< when the frame that is shown was due; none after a move
   std::string shown_;                         ///< its name
+  bool began_loop_ = false;                   ///< whether the next frame that plays is the first of the loop
   bool shown_since_start_ = false;            ///< whether the source has given a frame since it began
 
   mutable std::mutex mutex_;

@@ -225,6 +225,60 @@ TEST(Player, RepeatsWithTheLastFrameShownAsLongAsTheOthers) {
       << "400, less what a busy machine shows the first one late; 200 if the last took none";
 }
 
+TEST(Player, PlaysALoopAgainAndAgain) {
+  Numbers source(8, 0.01);
+  Shown shown(source, kPaused);
+  shown.player.set_loop(TimeSpan{100.05, 100.03});  // ends in either order
+  shown.player.seek(100.02);
+  shown.player.play();
+  EXPECT_THAT(shown.names(9), testing::Contains("5").Times(testing::Ge(2)));
+  shown.player.pause();
+  std::vector<std::string> names = shown.names(9);
+  names.resize(9);
+  EXPECT_THAT(names, ElementsAre("0", "2", "3", "4", "5", "3", "4", "5", "3"));
+}
+
+TEST(Player, ALoopOutlastsMoves) {
+  Numbers source(8, 0.01);
+  Shown shown(source, {.playing = false, .repeat = false});
+  shown.player.set_loop(TimeSpan{100.02, 100.03});
+  shown.player.seek(100.05);
+  std::size_t count = 2;
+  for (const int by : {-1, -1, -1, 1}) {  // whoever steps sees what is beyond it too
+    shown.names(count++);
+    shown.player.step(by);
+  }
+  EXPECT_THAT(shown.names(6), ElementsAre("0", "5", "4", "3", "2", "3"));
+  shown.player.seek(100.06);
+  shown.player.play();
+  std::vector<std::string> names = shown.names(12);
+  names.resize(12);
+  EXPECT_THAT(std::vector<std::string>(names.begin() + 6, names.end()), ElementsAre("6", "7", "2", "3", "2", "3"));
+  EXPECT_NEAR(shown.player.state().loop.value().first_s, 100.02, 1e-9);
+  shown.player.set_loop({});
+  while (!shown.player.state().at_end) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(shown.player.state().loop.has_value());
+}
+
+TEST(Player, ALoopWithoutAFrameStopsNothing) {
+  Numbers source(4, 0.01);
+  Shown shown(source, kPaused);
+  shown.player.set_loop(TimeSpan{100.012, 100.018});
+  shown.player.play();
+  std::vector<std::string> names = shown.names(5);
+  names.resize(5);
+  EXPECT_THAT(names, ElementsAre("0", "1", "2", "3", "2")) << "what comes after it";
+}
+
+TEST(Player, WithoutSeekingThereIsNoLoop) {
+  Numbers source(3, 0.001);
+  source.can_seek = false;
+  Shown shown(source, {});
+  shown.player.set_loop(TimeSpan{100.0, 100.001});
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "1", "2"));
+  EXPECT_FALSE(shown.player.state().loop.has_value());
+}
+
 TEST(Player, PlaysAgainFromTheBeginning) {
   Numbers source(2, 0.001);
   Shown shown(source, kOnce);
