@@ -24,7 +24,10 @@
 #include "vesalius/base/quiet_thread.h"
 #include "vesalius/error.h"
 #include "view/frame_message.h"
+#include "view/happenings.h"
+#include "view/people_files.h"
 #include "view/people_finder.h"
+#include "view/people_log.h"
 #include "view/source_opener.h"
 #include "view/viewer_messages.h"
 
@@ -58,9 +61,10 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 using Settings = PeopleFinder::Settings;
 
-constexpr std::chrono::milliseconds kPatience(50);     // time between questions whether to stop
-constexpr std::chrono::milliseconds kStatePause(200);  // between states while no frame comes
-constexpr std::chrono::milliseconds kSoon(200);        // a frame that plays is followed by another
+constexpr std::chrono::milliseconds kPatience(50);      // time between questions whether to stop
+constexpr std::chrono::milliseconds kStatePause(200);   // between states while no frame comes
+constexpr std::chrono::milliseconds kSoon(200);         // a frame that plays is followed by another
+constexpr std::chrono::milliseconds kHappenPause(500);  // between messages of what happened
 constexpr std::size_t kMedianOf = 30;
 constexpr std::size_t kMostRecent = 1000;
 constexpr const char* kOptionsPath = "/options.toml";
@@ -131,6 +135,7 @@ struct Job {
 struct Found {
   int source = 0;
   ViewedFrame viewed;
+  Settings settings;
   Clock::time_point arrived;
   bool again = false;
 };
@@ -165,6 +170,7 @@ class Viewer::Session {
         say_(viewer.say),
         facts_({viewer.source, viewer.model, viewer.folder, viewer.track}),
         now_({0, settings(options), nullptr}),
+        log_(std::make_shared<PeopleLog>(model_.body, viewer.player.rate)),
         playing_(std::make_shared<Playing>(std::shared_ptr<FrameSource>(&source, [](FrameSource*) {}), viewer.player,
                                            outputs())),
         server_(viewer.web, handlers()) {
@@ -225,7 +231,9 @@ class Viewer::Session {
       if (found && found->source != source) found.reset();  // nobody is to take it for one of this source
       if (!found && Clock::now() < last_state + kStatePause) continue;
       if (found) publish(*found);
+      if (found) remember(*found);
       record(found, recording_wanted_);
+      tell_happenings();
       if (server_.clients() > 0) server_.publish_text("state", state());
       last_state = Clock::now();
     }
@@ -274,8 +282,12 @@ class Viewer::Session {
       facts.source = opened.name;
       facts.after = after;
     });
+    log_.with([&](auto& log) { log = std::make_shared<PeopleLog>(model_.body, player_options_.rate); });
+    happenings_ = {};
+    happenings_told_ = {};
     server_.publish_text("", hello_message(facts_.get(), model_.body));
     server_.publish_text("state", state());
+    tell_happenings();
     next->player.start();
   }
 
@@ -300,6 +312,7 @@ class Viewer::Session {
       const std::string text = options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
       return WebResponse{"application/toml", text, false, "options.toml"};
     }
+    if (auto people = people_response(log_.get(), path)) return people;
     const auto& files = bundle_files();
     const auto file = std::ranges::find(files, path, &BundleFile::path);
     if (file == files.end()) return std::nullopt;
@@ -312,7 +325,7 @@ class Viewer::Session {
 
   std::vector<std::string> greet() {
     look_again();
-    return {hello_message(facts_.get(), model_.body), options_now(), state()};
+    return {hello_message(facts_.get(), model_.body), options_now(), state(), happened_.get()};
   }
 
   /// Does what a page asks for.
@@ -327,6 +340,13 @@ class Viewer::Session {
         {"seek", [&](const Json& c) { player.seek(c.at("to_s").get<double>()); }},
         {"speed", [&](const Json& c) { player.set_speed(c.at("times").get<double>()); }},
         {"repeat", [&](const Json& c) { player.set_repeat(c.at("on").get<bool>()); }},
+        {"loop",
+         [&](const Json& c) {
+           const Json& between = c.at("between_s");
+           std::optional<TimeSpan> loop;
+           if (!between.is_null()) loop = {between.at(0).get<double>(), between.at(1).get<double>()};
+           player.set_loop(loop);
+         }},
         {"list", [this](const Json& c) { expect_taken(opener().list(c.at("folder").get<std::string>())); }},
         {"open", [this](const Json& c) { expect_taken(opener().open(c.at("source").get<std::string>())); }},
         {"stages",
@@ -431,7 +451,7 @@ class Viewer::Session {
           figures.state.frames = viewed.number;
           figures.result.add_time(now, result_ms);
         });
-        if (!found_.push({source, std::move(viewed), job->arrived, job->again})) return;
+        if (!found_.push({source, std::move(viewed), job->settings, job->arrived, job->again})) return;
       } catch (const std::exception& e) {  // no frame may end the program
         say(e.what());
       }
@@ -442,6 +462,32 @@ class Viewer::Session {
     if (server_.clients() == 0) return;
     FrameMessages messages = frame_messages(found.viewed, model_.body);
     server_.publish_frame(std::move(messages.plain), std::move(messages.with_stages), found.arrived);
+  }
+
+  /// Keeps what is found, for files and for those who look later. In the caller's thread alone.
+  void remember(const Found& found) {
+    const ViewedFrame& viewed = found.viewed;
+    if (found.settings != remembered_) ++settings_number_;
+    remembered_ = found.settings;
+    const std::shared_ptr<PeopleLog> log = log_.get();
+    const bool had_all = log->forgotten() == 0;
+    log->add(viewed, settings_number_);
+    if (had_all && log->forgotten() > 0) {
+      say(fmt::format("{} MB of people are kept to be saved; from now on the first ones are forgotten",
+                      log->most_bytes() >> 20U));
+    }
+    const TrackOptions& track = found.settings->options.track;
+    const double track_rate = viewed.frame->time_s ? 1.0 : kUsualRate / double(track.rate);
+    happenings_.add(viewed.at_s, viewed.people, track_rate, double(track.gap_s));
+  }
+
+  void tell_happenings() {
+    const Clock::time_point now = Clock::now();
+    if (now < happenings_told_ + kHappenPause) return;
+    happenings_told_ = now;
+    std::string text = happenings_message(happenings_);
+    const bool is_new = happened_.with([&](std::string& told) { return std::exchange(told, text) != text; });
+    if (is_new) server_.publish_text("happened", std::move(text));
   }
 
   std::string state() {
@@ -471,6 +517,13 @@ class Viewer::Session {
   Guarded<Figures> figures_;
   Guarded<std::exception_ptr> ended_by_;  ///< why a camera gives nothing more
   std::atomic<bool> recording_wanted_ = false;
+  Guarded<std::shared_ptr<PeopleLog>> log_;  ///< of the source that is open
+  // Of the caller's thread alone:
+  Settings remembered_;  ///< those of the frame that was remembered last
+  int settings_number_ = 0;
+  Happenings happenings_;
+  Clock::time_point happenings_told_;
+  Guarded<std::string> happened_{happenings_message({})};  ///< the newest message of what happened
   FrameQueue<Job> jobs_{1};
   FrameQueue<Found> found_{1};
   Guarded<std::shared_ptr<Playing>> playing_;

@@ -89,12 +89,13 @@ std::string hello_message(const ViewerFacts& facts, const BodyModel& body) {
 }
 
 std::string state_message(const ViewerState& state, const PlayerState& player) {
-  Json span;
-  if (player.span) span = {player.span->first_s, player.span->last_s};
   Json saved;
   if (state.saved) {
     saved = {{"path", state.saved->path}, {"frames", state.saved->frames}, {"bytes", state.saved->bytes}};
   }
+  const auto pair_of = [](const std::optional<TimeSpan>& span) {
+    return span ? Json{span->first_s, span->last_s} : Json();
+  };
   return text_of({{"type", "state"},
                   {"live", player.live},
                   {"playing", player.playing},
@@ -102,7 +103,8 @@ std::string state_message(const ViewerState& state, const PlayerState& player) {
                   {"repeat", player.repeat},
                   {"speed", player.speed},
                   {"at_s", player.at_s},
-                  {"span_s", std::move(span)},
+                  {"span_s", pair_of(player.span)},
+                  {"loop_s", pair_of(player.loop)},
                   {"frames_per_s", hundredths(state.frames_per_s)},
                   {"frames", state.frames},
                   {"dropped", state.dropped},
@@ -119,6 +121,20 @@ std::string options_message(const PeopleOptions& options, const PeopleOptions& f
   const Json defaults = described(first, track);
   for (std::size_t i = 0; i < list.size(); ++i) list[i]["default"] = defaults[i]["value"];
   return text_of({{"type", "options"}, {"options", std::move(list)}});
+}
+
+std::string happenings_message(const Happenings& happenings) {
+  Json events = Json::array();
+  for (const Happening& event : happenings.events()) {
+    events.push_back({{"at_s", rounded(event.at_s, 1e6)},
+                      {"id", event.id},
+                      {"what", event.what},
+                      {"before", to_string(event.before)}});
+  }
+  return text_of({{"type", "happened"},
+                  {"events", std::move(events)},
+                  {"seen_s", happenings.seen().list()},
+                  {"known_s", happenings.known().list()}});
 }
 
 std::string notice_message(const std::string& text) { return text_of({{"type", "notice"}, {"text", text}}); }

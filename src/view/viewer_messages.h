@@ -7,6 +7,7 @@
 
 #include "vesalius/body_model.h"
 #include "vesalius/track_people.h"
+#include "view/happenings.h"
 #include "view/player.h"
 #include "view/source_choice.h"
 
@@ -46,6 +47,7 @@ std::string state_message(const ViewerState& state, const PlayerState& player);
 /// `first` are the options with which the viewer began, to which a page can go back. Those of tracking are left out
 /// where people are not followed.
 std::string options_message(const PeopleOptions& options, const PeopleOptions& first, bool track);
+std::string happenings_message(const Happenings& happenings);
 std::string notice_message(const std::string& text);
 /// Tells what may be opened in a folder, and for the choice's own which cameras are plugged in.
 std::string sources_message(const ChoiceList& list, const std::vector<SensorInfo>& cameras);

@@ -86,11 +86,13 @@ TEST(ViewerMessages, UnfitOptionsAreRefusedAndChangeNothing) {
 TEST(ViewerMessages, StateTellsWhatIsKnown) {
   PlayerState player;
   player.span = TimeSpan{1.0, 3.5};
+  player.loop = TimeSpan{2.0, 3.0};
   ViewerState state;
   state.page_ms = 12.345;
   state.recording = "bad\xff.mcap";
   const json with = json::parse(state_message(state, player));
   EXPECT_EQ(with.at("span_s"), (json{1.0, 3.5}));
+  EXPECT_EQ(with.at("loop_s"), (json{2.0, 3.0}));
   EXPECT_EQ(with.at("page_ms"), 12.35);
   EXPECT_EQ(with.at("result_ms"), nullptr);
   EXPECT_EQ(with.at("saved"), nullptr);
@@ -113,6 +115,23 @@ TEST(ViewerMessages, SourcesTellWhatCanBeOpened) {
   EXPECT_EQ(told.at("left_out"), 3);
   EXPECT_EQ(told.at("cameras").at(0), (json{{"source", "openni2:1"}, {"name", "Xtion"}}));
   EXPECT_EQ(json::parse(no_sources_message("x", "why")).at("error"), "why");
+}
+
+TEST(ViewerMessages, TellWhatHappened) {
+  TrackedPerson person;
+  person.id = 3;
+  person.state = TrackState::tracked;
+  person.stance = Stance::standing;
+  Happenings happenings;
+  for (const double at_s : {0.5, 1.0, 1.5}) {
+    TrackedFrame frame{at_s, {}, {}, {}};
+    if (at_s > 0.5) frame.people.push_back(person);
+    if (at_s > 1.0) frame.events.push_back({3, 1.25, Stance::fallen});
+    happenings.add(at_s, frame, 1.0, 5.0);
+  }
+  EXPECT_EQ(json::parse(happenings_message(happenings)), json::parse(R"({"type":"happened","known_s":[[0.5,1.5]],
+      "seen_s":[[0.5,1.5]],"events":[{"at_s":1.0,"id":3,"what":"came","before":"unknown"},
+      {"at_s":1.25,"id":3,"what":"fallen","before":"standing"}]})"));
 }
 
 TEST(ViewerMessages, HelloDescribesTheBody) {

@@ -202,6 +202,49 @@ TEST(Viewer, FollowsPeopleHoweverOneMoves) {
 }
 
 // Labels: threads
+TEST(Viewer, TellsWhatHappenedAndGivesPeopleAsFiles) {
+  const auto viewer = run_crossing(true);
+  Page page(viewer->port());
+  ASSERT_FALSE(frame_named(page, "0").is_null());
+  for (int i = 1; i < 6; ++i) {
+    page.send(R"({"do":"step","by":1})");
+    ASSERT_FALSE(frame_named(page, std::to_string(i)).is_null());
+  }
+  ASSERT_TRUE(page.receive_text(R"("known_s":[[0.0,0.16)"));
+  Page second(viewer->port());
+  const auto late = second.receive_text("\"happened\"");
+  ASSERT_TRUE(late) << "whoever comes later is told as well";
+  const json happened = json::parse(late->bytes);
+  EXPECT_EQ(happened.at("seen_s").size(), 1U);
+  const std::string table = test::request(viewer->port(), "/people.csv").body;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * 6);
+  EXPECT_THAT(test::request(viewer->port(), "/people-2.bvh").body, testing::StartsWith("HIERARCHY"));
+  EXPECT_EQ(test::request(viewer->port(), "/people.csv", "evil.example").status, 403);
+}
+
+// Labels: threads
+TEST(Viewer, PlaysALoop) {
+  const Running viewer(true);
+  Page page(viewer.port());
+  page.send(R"({"do":"loop","between_s":[0.5,0.52]})");
+  ASSERT_TRUE(page.receive_text(R"("loop_s":[0.5,0.52])"));
+  page.send(R"({"do":"seek","to_s":0.5})");
+  ASSERT_FALSE(frame_named(page, "50").is_null());
+  page.send(R"({"do":"play"})");
+  for (int i = 0; i < 5; ++i) {
+    const json frame = next_frame(page);
+    ASSERT_FALSE(frame.is_null());
+    EXPECT_THAT(name_of(frame), testing::AnyOf("50", "51", "52"));
+  }
+  page.send(R"({"do":"loop","between_s":null})");
+  EXPECT_TRUE(page.receive_text(R"("loop_s":null)"));
+  page.send(R"({"do":"loop","between_s":[1]})");
+  const auto notice = page.receive_text("\"notice\"");
+  ASSERT_TRUE(notice);
+  EXPECT_THAT(notice->bytes, HasSubstr("not a command"));
+}
+
+// Labels: threads
 TEST(Viewer, FindsPeopleInEachFrameAloneIfThatIsWanted) {
   ViewerOptions options = viewer_options(true, ".");
   options.track = false;

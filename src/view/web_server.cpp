@@ -8,6 +8,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -31,6 +32,8 @@ using net::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kRequestPatience(10);  // for a request, and for its answer to be taken
+constexpr std::size_t kSlowest = 128U << 10U;         // bytes a second by which a long answer is taken at least
+constexpr int kMostMade = 2;                          // answers that are made or on their way: they may be large
 constexpr std::size_t kMaxHeader = 8192;              // bytes
 constexpr std::uint64_t kMaxBody = 1024;              // of a request: none is expected
 constexpr std::size_t kMostTexts = 50;                // that wait for one client
@@ -97,6 +100,8 @@ struct Hub {
   std::atomic<int> client_count = 0;
   std::atomic<int> detail_count = 0;
   int connections = 0;
+  int made = 0;             ///< answers that are being made or sent
+  net::thread_pool* maker;  ///< its thread makes them
 };
 
 /// One page.
@@ -217,6 +222,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     place_ = hub_.waiting.insert(hub_.waiting.end(), this);
   }
   ~Connection() {
+    end_made();
     hub_.waiting.erase(place_);
     --hub_.connections;
   }
@@ -243,8 +249,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Request = http::request<http::string_body>;
 
   /// Begins to wait for the other side, behind all who wait already.
-  void wait() {
-    stream_.expires_after(kRequestPatience);
+  void wait(std::size_t bytes = 0) {
+    stream_.expires_after(kRequestPatience + std::chrono::seconds(bytes / kSlowest));
     hub_.waiting.splice(hub_.waiting.end(), hub_.waiting, place_);
   }
 
@@ -263,9 +269,35 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
       return refuse(request, http::status::method_not_allowed, "expected GET");
     }
-    const std::optional<WebResponse> found = hub_.handlers.get(path);
+    std::optional<WebResponse> found = hub_.handlers.get(path);
     if (!found) return refuse(request, http::status::not_found, "nothing here");
-    send(request, http::status::ok, *found);
+    if (found->make) return make(request, found->make);
+    send(request, std::move(*found));
+  }
+
+  /// Makes an answer in the other thread and sends it.
+  void make(const Request& request, const std::function<WebResponse()>& how) {
+    if (hub_.made == kMostMade)
+      return refuse(request, http::status::service_unavailable, "others are saving; try again");
+    ++hub_.made;
+    is_made_ = true;
+    net::post(*hub_.maker, [self = shared_from_this(), request, how]() mutable {
+      WebResponse made;
+      try {
+        made = how();
+      } catch (const std::exception& e) {  // memory that is short must not end the program
+        made = {"text/plain; charset=utf-8", std::string("vesalius: ") + e.what() + "\n", false, {}, 500, {}};
+      }
+      // The connection ends in the server's thread.
+      const auto back = self->stream_.get_executor();
+      net::post(back, [self = std::move(self), request, made = std::move(made)]() mutable {
+        self->send(request, std::move(made));
+      });
+    });
+  }
+
+  void end_made() {
+    if (std::exchange(is_made_, false)) --hub_.made;
   }
 
   void upgrade(const Request& request) {
@@ -281,11 +313,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void refuse(const Request& request, http::status status, const std::string& why) {
-    send(request, status, {"text/plain; charset=utf-8", "vesalius: " + why + "\n"});
+    send(request,
+         {"text/plain; charset=utf-8", "vesalius: " + why + "\n", false, {}, static_cast<unsigned>(status), {}});
   }
 
-  void send(const Request& request, http::status status, const WebResponse& content) {
-    response_ = {status, request.version()};
+  void send(const Request& request, WebResponse content) {
+    response_ = {static_cast<http::status>(content.status), request.version()};
     response_.set(http::field::content_type, content.type);
     if (content.gzip) response_.set(http::field::content_encoding, "gzip");
     if (!content.file_name.empty()) {
@@ -297,11 +330,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     response_.keep_alive(request.keep_alive());
-    response_.body() = content.body;
+    response_.body() = std::move(content.body);
     response_.prepare_payload();
     if (request.method() == http::verb::head) response_.body().clear();
-    wait();
+    wait(response_.body().size());
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      self->end_made();
+      self->response_.body() = {};
       if (!error && self->response_.keep_alive()) return self->read();
       beast::error_code ignored;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -314,17 +349,20 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
+  bool is_made_ = false;  ///< whether its answer counts among those that are made
 };
 
 }  // namespace
 
 struct WebServer::Server {
   Server(WebServerOptions options, WebHandlers handlers)
-      : hub{std::move(options), std::move(handlers), {}, {}, 0, 0, 0} {
+      : hub{std::move(options), std::move(handlers), {}, {}, 0, 0, 0, 0, &maker} {
     listen();
   }
 
   ~Server() {
+    maker.stop();
+    maker.join();
     io.stop();
     if (thread.joinable()) thread.join();
   }
@@ -391,6 +429,7 @@ struct WebServer::Server {
   net::io_context io{1};
   tcp::acceptor acceptor{io};
   net::steady_timer pause{io};
+  net::thread_pool maker{1};  ///< the last, since what waits for it has connections
   std::uint16_t port = 0;
   std::jthread thread;
 };

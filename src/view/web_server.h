@@ -30,6 +30,9 @@ struct WebResponse {
   std::string body;
   bool gzip = false;           ///< whether the body is compressed
   std::string file_name = {};  ///< name under which a browser saves it; empty = it shows it
+  unsigned status = 200;
+  /// Where it takes long: makes what is sent instead. Called in a thread beside the server's, one after the other.
+  std::function<WebResponse()> make = {};
 };
 
 /// What one client wants.

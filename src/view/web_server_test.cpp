@@ -25,10 +25,11 @@ class Server {
  public:
   explicit Server(const std::string& token = "", WebServerOptions options = {})
       : server(with_access(std::move(options), token),
-               {[](const std::string& path) -> std::optional<WebResponse> {
+               {[this](const std::string& path) -> std::optional<WebResponse> {
                   if (path == "/") return WebResponse{"text/html", "page", false, {}};
                   if (path == "/view.js") return WebResponse{"text/javascript", "script", false, {}};
                   if (path == "/options.toml") return WebResponse{"application/toml", "a = 1", false, "options.toml"};
+                  if (path == "/slow") return WebResponse{"", "", false, {}, 200, [this] { return make_slowly(); }};
                   return std::nullopt;
                 },
                 [](const std::string& path) { return path == "/view.js"; },
@@ -54,8 +55,18 @@ class Server {
     ASSERT_TRUE(holds());
   }
 
+  /// Takes until it is allowed to end.
+  WebResponse make_slowly() {
+    ++making;
+    while (!may_end) std::this_thread::sleep_for(1ms);
+    if (fails) throw std::runtime_error("no memory");
+    return {"text/plain", std::string(1 << 20, 'x'), false, "slow.txt", 200, {}};
+  }
+
   std::mutex mutex;
   std::vector<std::string> received;
+  std::atomic<int> making = 0;
+  std::atomic<bool> may_end = false, fails = false;
   std::atomic<int> shown = 0;
   WebServer server;
 
@@ -66,6 +77,38 @@ class Server {
     return options;
   }
 };
+
+// Labels: threads
+TEST(WebServer, GoesOnWhileAnAnswerIsMade) {
+  Server server;
+  std::vector<test::Got> got(2);
+  std::vector<std::jthread> asking;
+  for (test::Got& one : got) asking.emplace_back([&] { one = request(server.port(), "/slow"); });
+  server.until([&] { return server.making == 1; });
+  EXPECT_EQ(request(server.port(), "/").status, 200);
+  EXPECT_EQ(request(server.port(), "/slow", "evil.example").status, 403);
+  server.until([&] { return request(server.port(), "/slow").status == 503; });
+  server.may_end = true;
+  asking.clear();
+  for (const test::Got& one : got) {
+    EXPECT_EQ(one.status, 200);
+    EXPECT_EQ(one.body.size(), 1U << 20U);
+  }
+  server.fails = true;
+  EXPECT_EQ(request(server.port(), "/slow").status, 500);
+  EXPECT_EQ(request(server.port(), "/slow").body, "vesalius: no memory\n");
+}
+
+// Labels: threads
+TEST(WebServer, EndsWhileAnswersAreMade) {
+  std::optional<Server> server(std::in_place);
+  const std::uint16_t port = server->port();
+  std::vector<std::jthread> asking;
+  for (int i = 0; i < 2; ++i) asking.emplace_back([port] { request(port, "/slow"); });
+  server->until([&] { return server->making == 1; });
+  server->may_end = true;
+  server.reset();
+}
 
 TEST(WebServer, GivesFilesAndNothingElse) {
   Server server;
