@@ -1,16 +1,22 @@
 import { SourceDialog, sizeText } from './choice';
 import { Cloud, Colouring } from './cloud';
 import { Connection } from './connection';
+import { Curves } from './curves';
 import { DEPTH_COLOURS, Flat } from './flat';
+import { EventList } from './happened';
 import { FullScreen } from './full_screen';
+import { History } from './history';
 import { Marks } from './marks';
 import { Measure } from './measure';
 import { OptionFields } from './options';
+import './over_time.css';
 import { partColours } from './palette';
-import { PeopleList, showEvents } from './people';
-import { Body, Command, Frame, Hello, TextMessage, ViewState, Xyz } from './protocol';
+import { PeopleList } from './people';
+import { Body, Command, Frame, Happened, Hello, TextMessage, ViewState, Xyz } from './protocol';
+import { SavePeople } from './save_people';
 import { SkeletonChoice, Skeletons } from './skeleton';
 import { StagePictures } from './stages';
+import { Timeline, loopFrom, loopTo } from './timeline';
 import { TrackMemory, numberOf, shownPeople } from './track';
 
 function get<T extends HTMLElement>(id: string): T {
@@ -27,6 +33,8 @@ let body: Body | null = null;
 let frame: Frame | null = null;
 let state: ViewState | null = null;
 let after = 0;  // number of the last frame that is of another source
+let happened: Happened | null = null;
+let liveSince_s: number | null = null;  // the time of day, in seconds since 1970, at which a camera's clock was 0
 let selected = -1;
 let seekTo: number | null = null;  // where the slider was moved to, until that is sent
 let holdsSlider = false;
@@ -89,16 +97,23 @@ const sources = new SourceDialog(
 );
 const fullScreen = new FullScreen((isOn) => get('full-screen').setAttribute('aria-pressed', String(isOn)));
 
+const seekTo_s = (to_s: number): void => connection.send({ do: 'seek', to_s });
+const history = new History();
+const timeline = new Timeline(seek, seekTo_s, placeText);
+const events = new EventList(get('events'), get('happened'), seekTo_s);
+const curves = new Curves(get('curves'), history, choose, seekTo_s, placeText);
+const saving = new SavePeople(get<HTMLDialogElement>('saving'), save);
+
 const connection = new Connection({
   async frame(shown) {
     if (shown.number <= after) return;
     const before = frame;
     frame = shown;
     memory.add(shown.found);
+    history.add(shown);
+    if (state) curves.show(state, shown.at_s);
     flat.show(shown);
     tellMeasured();
-    showEvents(get('events'), memory.events, clock, state?.span_s?.[0] ?? 0);
-    get('happened').hidden = memory.events.length === 0;
     if (body) {
       people.show(shown, body);
       if (!get('stages').hidden) stages.show(shown, body, currentPartColours());
@@ -128,6 +143,11 @@ function receive(message: TextMessage): void {
     case 'state':
       state = message;
       showState(message);
+      showHappened();
+      break;
+    case 'happened':
+      happened = message;
+      showHappened();
       break;
     case 'options':
       options.show(message.options);
@@ -147,6 +167,8 @@ function begin(hello: Hello): void {
   after = hello.after;
   frame = null;
   memory.clear();
+  history.clear();
+  liveSince_s = null;
   skeletons.setBody(hello.body, hello.bones);
   document.body.classList.toggle('single-frames', !hello.track);
   for (const name of ['bones', 'smoothed']) {
@@ -170,6 +192,19 @@ function clock(seconds: number): string {
   return `${minutes}:${(seconds - 60 * minutes).toFixed(2).padStart(5, '0')}`;
 }
 
+/** A place in a recording from its beginning, or when a camera was there. */
+function placeText(at_s: number): string {
+  if (state?.live) liveSince_s ??= Date.now() / 1000 - state.at_s;
+  if (liveSince_s === null) return clock(at_s - (state?.span_s?.[0] ?? 0));
+  return new Date(1000 * (liveSince_s + at_s)).toTimeString().slice(0, 8);
+}
+
+function showHappened(): void {
+  if (!state) return;
+  timeline.show(state, happened);
+  events.show(happened?.events ?? [], placeText, state.span_s?.[0] ?? null);
+}
+
 function showState(now: ViewState): void {
   const ms = (value: number | null): string => (value === null ? '–' : `${Math.round(value)} ms`);
   const doing = !now.playing ? (now.at_end ? 'at the end' : 'paused') : now.live ? 'live' : 'playing';
@@ -189,7 +224,9 @@ function showState(now: ViewState): void {
   get('play').textContent = now.playing ? 'Pause' : 'Play';
   get('record').setAttribute('aria-pressed', String(now.recording !== ''));
   get('record').textContent = now.recording ? 'Stop recording' : 'Record';
-  for (const id of ['back', 'seek', 'repeat']) get<HTMLInputElement>(id).disabled = !now.span_s;
+  for (const id of ['back', 'seek', 'repeat', 'loop-from', 'loop-to']) get<HTMLInputElement>(id).disabled = !now.span_s;
+  for (const id of ['loop-from', 'loop-to']) get(id).setAttribute('aria-pressed', String(now.loop_s !== null));
+  get<HTMLButtonElement>('loop-none').disabled = !now.loop_s;
   get('transport').classList.toggle('live', now.live);
   get<HTMLInputElement>('repeat').checked = now.repeat;
   get<HTMLSelectElement>('speed').value = String(now.speed);
@@ -221,6 +258,7 @@ function choose(number: number): void {
   cloud?.select(number);
   flat.select(number);
   people.select(number, frame, body);
+  curves.select(number);
 }
 
 function setSkeleton(): void {
@@ -241,6 +279,7 @@ function showTab(name: string): void {
     get(tab.getAttribute('aria-controls') ?? '').hidden = !is;
   }
   get('side').classList.toggle('wide', name === 'stages');
+  curves.draw();
   connection.send({ do: 'stages', on: name === 'stages' });
 }
 
@@ -297,6 +336,7 @@ function showTheme(): void {
   const isDark = theme === 'dark' || (theme === 'auto' && systemIsDark.matches);
   document.documentElement.dataset.theme = isDark ? 'dark' : 'light';
   get('theme').textContent = `Theme: ${theme}`;
+  curves.draw();
   cloud?.setBackground(getComputedStyle(document.body).getPropertyValue('--space').trim());
 }
 
@@ -332,6 +372,15 @@ function playOrPause(): void {
   connection.send({ do: state?.playing ? 'pause' : 'play' });
 }
 
+function loop(between_s: [number, number] | null): void {
+  if (state?.span_s) connection.send({ do: 'loop', between_s });
+}
+
+const savePeople = (): void => void saving.open(selected);
+const repeatFrom = (): void => loop(state && loopFrom(state));
+const repeatTo = (): void => loop(state && loopTo(state));
+const repeatNone = (): void => loop(null);
+
 function chooseNext(choice: HTMLSelectElement): void {
   const free = [...choice.options].filter((option) => !option.disabled);
   choice.value = free[(free.indexOf(choice.selectedOptions[0]) + 1) % free.length].value;
@@ -351,6 +400,10 @@ const KEYS: Record<string, () => void> = {
     chooseNext(skeletonChoice);
     setSkeleton();
   },
+  i: repeatFrom,
+  e: repeatTo,
+  l: repeatNone,
+  p: savePeople,
   t: () => get('show-trails').click(),
   b: () => get('show-bodies').click(),
   r: () => cloud?.resetView(),
@@ -423,6 +476,10 @@ function listen(): void {
   get('open').addEventListener('click', () => sources.show());
   get('measure').addEventListener('click', () => setMeasuring(!isMeasuring));
   get('full-screen').addEventListener('click', () => fullScreen.toggle());
+  get('save-people').addEventListener('click', savePeople);
+  get('loop-from').addEventListener('click', repeatFrom);
+  get('loop-to').addEventListener('click', repeatTo);
+  get('loop-none').addEventListener('click', repeatNone);
   get('keys').addEventListener('click', KEYS['?']);
   get('theme').addEventListener('click', () => {
     theme = THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length];
@@ -460,5 +517,7 @@ Object.assign(window, {
     draw: () => cloud?.drawNow(),
     send: (command: Command) => connection.send(command),
     measured: () => measure.points,
+    happened: () => happened,
+    history,
   },
 });

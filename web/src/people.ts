@@ -1,9 +1,10 @@
 import { css, personColour } from './palette';
 import { Body, Found, FoundPoint, Frame, Person } from './protocol';
 import { angleText, anglesOf, inWords } from './marks';
-import { ToldEvent, isHidden, numberOf, shownPeople } from './track';
+import { isHidden, numberOf, shownPeople } from './track';
 
-function element<K extends keyof HTMLElementTagNameMap>(
+/** Makes an element with what is in it. */
+export function element<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   content: (Node | string)[] = [],
   className = '',
@@ -83,19 +84,6 @@ function absentText(person: Person, body: Body, found: Found): string {
 }
 
 const SMOOTHED = ', smoothed';
-
-/** The list of what happened, the newest first. `first_s` is when the source begins. */
-export function showEvents(list: HTMLElement, events: ToldEvent[], clock: (seconds: number) => string, first_s: number): void {
-  const lines = events.map((event) => `${clock(event.time_s - first_s)}  person ${event.id}: ${event.stance}`).reverse();
-  if (lines.join() === [...list.children].map((line) => line.textContent).join()) return;
-  list.replaceChildren(
-    ...lines.map((line, i) => {
-      const item = element('li', [line]);
-      item.style.borderLeftColor = css(personColour(events[events.length - 1 - i].id));
-      return item;
-    }),
-  );
-}
 
 /** The list of people, and the numbers of the one that is chosen. */
 export class PeopleList {

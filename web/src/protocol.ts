@@ -158,6 +158,7 @@ export interface ViewState {
   speed: number;
   at_s: number;
   span_s: [number, number] | null;
+  loop_s: [number, number] | null;
   frames_per_s: number;
   frames: number;
   dropped: number;
@@ -167,6 +168,22 @@ export interface ViewState {
   recording: string;
   recorded: number;
   saved: { path: string; frames: number; bytes: number } | null;
+}
+
+/** What happened to somebody: `what` is came, went, or the stance that followed that of `before`. */
+export interface Happening {
+  at_s: number;
+  id: number;
+  what: string;
+  before: string;
+}
+
+/** All that is known so far: also in which stretches somebody is in view, and which were shown. */
+export interface Happened {
+  type: 'happened';
+  events: Happening[];
+  seen_s: [number, number][];
+  known_s: [number, number][];
 }
 
 export interface OptionFacts {
@@ -201,6 +218,7 @@ export type TextMessage =
   | Hello
   | SourceList
   | ViewState
+  | Happened
   | { type: 'options'; options: OptionFacts[] }
   | { type: 'notice'; text: string };
 
@@ -209,6 +227,7 @@ export type Command =
   | { do: 'step'; by: number }
   | { do: 'seek'; to_s: number }
   | { do: 'speed'; times: number }
+  | { do: 'loop'; between_s: [number, number] | null }
   | { do: 'repeat' | 'stages' | 'record'; on: boolean }
   | { do: 'list'; folder: string }
   | { do: 'open'; source: string }

@@ -1,10 +1,9 @@
 // People over time.
 import { Rgb, personColour } from './palette';
-import { Found, Person, StanceEvent, Xyz } from './protocol';
+import { Found, Person, Xyz } from './protocol';
 
 const TRAIL_S = 5;
 const MOST_GAP_S = 0.5;  // between two points that are joined
-const MOST_EVENTS = 30;
 
 /** The number by which a person is called: the id, or the index in the frame where people are not followed. */
 export function numberOf(person: Person): number {
@@ -41,18 +40,12 @@ export interface TrailPiece {
   hidden: boolean;
 }
 
-export interface ToldEvent extends StanceEvent {
-  told_s: number;
-}
-
-/** Where people's trunks were in the last seconds, and what happened. A step back in time forgets what came later. */
+/** Where people's trunks were in the last seconds. A step back in time forgets what came later. */
 export class TrackMemory {
   private readonly trails = new Map<number, TrailPoint[]>();
-  events: ToldEvent[] = [];
 
   clear(): void {
     this.trails.clear();
-    this.events = [];
   }
 
   add(found: Found): void {
@@ -69,8 +62,6 @@ export class TrackMemory {
       points.push({ at_s: now, xyz: person.position_m, hidden: isHidden(person) });
       this.trails.set(person.id, points);
     }
-    const before = this.events.filter((event) => event.told_s < now);
-    this.events = [...before, ...(found.events ?? []).map((event) => ({ ...event, told_s: now }))].slice(-MOST_EVENTS);
   }
 
   trail(person: Person): TrailPiece[] {

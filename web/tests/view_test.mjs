@@ -147,11 +147,12 @@ test('follows the people of a clip as detect does', async () => {
       for (const [id, used] of colours) assert.equal(used.size, 1, `person ${id} keeps the colour`);
       assert.equal(new Set([...colours.values()].flatMap((used) => [...used])).size, Math.min(colours.size, 7));
       const events = expected.flatMap((line) => line.events);
-      assert.equal(await page.locator('#events > li').count(), events.length);
-      if (events.length > 0) {
-        const last = await page.locator('#events > li').first().innerText();
-        assert.ok(last.endsWith(`person ${events.at(-1).id}: ${events.at(-1).stance}`), last);
+      await until(page, (count) => window.vesalius.happened().events.filter(({ before }) => before).length >= count, events.length);
+      const told = await page.evaluate(() => window.vesalius.happened().events);
+      for (const { id, time_s, stance } of events) {
+        assert.ok(told.some((event) => event.id === id && event.what === stance && Math.abs(event.at_s - time_s) < 1e-3), stance);
       }
+      assert.equal(await page.locator('#events > li').count(), told.length);
       await page.click('#tab-options');
       await page.fill('#filter', 'track.hidden');
       assert.equal(await page.locator('[data-name="track.hidden"] input').inputValue(), '3');
@@ -197,6 +198,222 @@ test('trails grow, and going back takes them back', async () => {
     {},
     null,
     clip(),
+  );
+});
+
+const demo = join(root, 'data/demo');
+
+test('what happened is listed and marked, and a click goes there', async () => {
+  await withPage(
+    async (page, view) => {
+      for (let i = 0; i < 32; ++i) await step(page);  // no frame is dropped, and somebody falls
+      const fell = () => window.vesalius.happened().events.find(({ what }) => what === 'fallen');
+      await until(page, fell);
+      const { at_s, id } = await page.evaluate(fell);
+      const line = page.locator('#events button', { hasText: `person ${id}: fell` });
+      await line.focus();
+      await page.keyboard.press('Enter');
+      await until(page, (to) => Math.abs(window.vesalius.state().at_s - to) < 0.07, Math.max(at_s - 1, 0));
+      assert.ok((await line.innerText()).startsWith(`0:0${at_s.toFixed(2)}`), await line.innerText());
+      assert.equal(await page.locator('#marks .event').count(), await page.locator('#events > li').count());
+      // People are there from the first frame on that is sure of them.
+      const { seen_s, known_s } = await page.evaluate(() => window.vesalius.happened());
+      const [first, last] = await page.evaluate(() => window.vesalius.state().span_s);
+      assert.ok(known_s[0][0] === first && known_s[0][1] > first + 2, JSON.stringify(known_s));
+      assert.ok(seen_s[0][0] < first + 1, JSON.stringify(seen_s));
+      const box = await page.locator('#marks').boundingBox();
+      await page.mouse.click(box.x + 0.9 * box.width, box.y + 12);
+      await until(page, (to) => Math.abs(window.vesalius.state().at_s - to) < 0.2, first + 0.9 * (last - first));
+      const share = (await page.locator('#marks .event').evaluateAll((lines) => lines.map((one) => parseFloat(one.getAttribute('x1')))))[0];
+      const event = (await page.evaluate(() => window.vesalius.happened().events))[0];
+      await page.mouse.click(box.x + (share / 100) * box.width + 2, box.y + 4);
+      await until(page, (to) => Math.abs(window.vesalius.state().at_s - to) < 0.07, Math.max(event.at_s - 1, first));
+      await page.screenshot({ path: join(pictures, 'happened.png') });
+      const late = await open(browser, view.address);
+      await until(late, (count) => document.querySelectorAll('#events > li').length === count, await page.locator('#events > li').count());
+      await late.context().close();
+    },
+    [],
+    {},
+    null,
+    demo,
+  );
+});
+
+test('a stretch repeats until it is taken away', async () => {
+  await withPage(
+    async (page) => {
+      const at = (to) => until(page, (wanted) => Math.abs(window.vesalius.state().at_s - wanted) < 0.05, to);
+      const seek = async (to) => {
+        await page.evaluate((value) => {
+          const slider = document.getElementById('seek');
+          slider.value = value;
+          slider.dispatchEvent(new Event('input'));
+        }, String(to));
+        await at(to);
+      };
+      await seek(2);
+      await page.keyboard.press('i');
+      await until(page, () => window.vesalius.state().loop_s?.[0] === window.vesalius.state().at_s);
+      await page.keyboard.press('ArrowRight');
+      await at(2 + 1 / 15);
+      await page.click('#loop-to');
+      const loop = await (await page.waitForFunction(() => {
+        const { loop_s, at_s } = window.vesalius.state();
+        return loop_s?.[1] === at_s && loop_s;
+      })).jsonValue();
+      assert.ok(loop[0] > 1.9 && loop[1] < 2.2, JSON.stringify(loop));
+      assert.equal(await page.locator('#marks .loop').count(), 1);
+      assert.match(await page.locator('#marks svg').getAttribute('aria-label'), /repeats from 0:02\.00 to 0:02\.07/);
+      await seek(1.9);  // paused, beyond it
+      await page.click('#play');
+      await page.evaluate(() => {
+        window.places = [];
+        setInterval(() => window.places.push(window.vesalius.state().at_s), 10);
+      });
+      await page.waitForTimeout(1500);
+      const places = await page.evaluate(() => window.places);
+      assert.ok(places.some((place) => place > 2.06) && places.every((place) => place < 2.1), JSON.stringify(places));
+      await page.keyboard.press('l');
+      await until(page, () => window.vesalius.state().loop_s === null);
+      await until(page, () => window.vesalius.state().at_s > 2.3);
+      assert.equal(await page.locator('#marks .loop').count(), 0);
+    },
+    [],
+    {},
+    null,
+    demo,
+  );
+});
+
+test('draws curves of the chosen person, and a click goes there', async () => {
+  await withPage(
+    async (page) => {
+      for (let i = 0; i < 12; ++i) await step(page);
+      await page.click('#tab-curves');
+      assert.match(await page.locator('#curves').innerText(), /Choose a person/);
+      const id = (await shown(page)).people[0].id;
+      await page.locator('#curves select').first().selectOption(String(id));
+      await until(page, () => document.querySelectorAll('#curves canvas').length === 4);
+      // The numbers are those of the frame.
+      const expected = await page.evaluate((number) => {
+        const { found, floor } = window.vesalius.frame();
+        const person = found.people.find((one) => one.id === number);
+        const joints = person.smoothed.nite15;
+        const [a, b, c] = ['r_hip', 'r_knee', 'r_foot'].map((name) => joints[name].xyz_m);
+        const [u, v] = [a, c].map((end) => end.map((value, i) => value - b[i]));
+        const dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+        const [x, y, z] = joints.head.xyz_m;
+        return {
+          height: floor.offset_m - (x * floor.normal[0] + y * floor.normal[1] + z * floor.normal[2]),
+          speed: Math.hypot(...person.velocity_m_s),
+          knee: (Math.acos(dot / Math.hypot(...u) / Math.hypot(...v)) * 180) / Math.PI,
+          score: 100 * person.score,
+        };
+      }, id);
+      await page.locator('#curves select').nth(1).selectOption({ label: 'right knee' });
+      const told = await page.locator('#curves figcaption').allInnerTexts();
+      assert.equal(told[0], `Height of the head over the floor: ${expected.height.toFixed(2)} m`);
+      assert.equal(told[1], `Speed: ${expected.speed.toFixed(2)} m/s`);
+      assert.equal(told[2], `Angle of the right knee: ${expected.knee.toFixed(0)} °`);
+      assert.ok(told[3].startsWith(`Confidence: person ${expected.score.toFixed(0)} %, joints, dashed `), told[3]);
+      assert.ok(expected.height > 0.5 && expected.height < 2.2, `${expected.height} m`);
+      await page.screenshot({ path: join(pictures, 'curves.png') });
+      const [first, last] = await page.evaluate(() => window.vesalius.state().span_s);
+      const box = await page.locator('#curves .u-over').first().boundingBox();
+      await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+      await until(page, (to) => Math.abs(window.vesalius.state().at_s - to) < 0.1, first + (last - first) / 4);
+      // Whoever is not seen has a gap, and what was not looked at too.
+      const gaps = await page.evaluate((number) => {
+        const { history } = window.vesalius;
+        const frame = window.vesalius.frame();
+        const without = { ...frame, at_s: 1000, found: { ...frame.found, people: [] } };
+        const hidden = { ...frame, at_s: 1001, found: { ...frame.found, people: frame.found.people.map((one) => ({ ...one, state: 'hidden' })) } };
+        for (const one of [{ ...frame, at_s: 999 }, without, hidden, { ...frame, at_s: 1002 }, { ...frame, at_s: 1010 }]) history.add(one);
+        return history.series(number, 999, 1010, [1]).values[0].slice(-6).map((value) => value !== null);
+      }, id);
+      assert.deepEqual(gaps, [true, false, false, true, false, true]);
+      // Memory has an end.
+      const most = await page.evaluate(() => {
+        const frame = window.vesalius.frame();
+        for (let i = 0; i < 120000; ++i) window.vesalius.history.add({ ...frame, at_s: 2000 + i, found: { ...frame.found, people: frame.found.people.slice(0, 1) } });
+        return window.vesalius.history.size();
+      });
+      assert.ok(most > 100000 && most <= 108000, `${most} samples`);
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
+});
+
+test('saves people as files of other programs', async () => {
+  const { folder, remove } = newFolder();
+  await withPage(
+    async (page, view) => {
+      for (let i = 0; i < 8; ++i) await step(page);
+      await step(page, -1);  // a time counts once
+      const lines = detected(clip(), '--track').slice(0, 9).map((line) => JSON.stringify(line));
+      const people = join(folder, 'people.jsonl');
+      writeFileSync(people, `${lines.join('\n')}\n`);
+      run('export', people, '-q', '--to', join(folder, 'expected.csv'));
+      run('export', people, '-q', '--to', join(folder, 'expected.glb'));
+      const ids = (await (await fetch(`${view.address}people.json`)).json()).people.filter(({ bodies }) => bodies > 0).map(({ id }) => id);
+      for (const id of ids) run('export', people, '-q', '--to', join(folder, `expected-${id}.bvh`), '--person', String(id));
+      await page.keyboard.press('p');
+      await page.locator('#saving-note', { hasText: 'in 9 frames' }).waitFor();
+      const saved = async (format, person, count) => {
+        await page.selectOption('#saving-format', format);
+        if (person !== null) await page.selectOption('#saving-person', person);
+        const downloads = [];
+        const take = (download) => downloads.push(download);
+        page.on('download', take);
+        await page.click('#saving-save');
+        while (downloads.length < count) await page.waitForTimeout(30);
+        page.off('download', take);
+        return Object.fromEntries(await Promise.all(downloads.map(async (one) => [one.suggestedFilename(), readFileSync(await one.path())])));
+      };
+      const table = await saved('csv', null, 1);
+      assert.equal(table['people.csv'].toString(), readFileSync(join(folder, 'expected.csv'), 'utf8'));
+      assert.ok((await saved('glb', null, 1))['people.glb'].equals(readFileSync(join(folder, 'expected.glb'))));
+      const all = await saved('bvh', '', ids.length);
+      assert.deepEqual(Object.keys(all).sort(), ids.map((id) => `people-${id}.bvh`).sort());
+      for (const id of ids) assert.ok(all[`people-${id}.bvh`].equals(readFileSync(join(folder, `expected-${id}.bvh`))));
+      assert.deepEqual(Object.keys(await saved('bvh', String(ids[0]), 1)), [`people-${ids[0]}.bvh`]);
+      await page.screenshot({ path: join(pictures, 'saving.png') });
+      await page.keyboard.press('Escape');
+      assert.ok(!(await page.locator('#saving').isVisible()));
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
+  remove();
+});
+
+test('says so where there is nobody to save, or no body', async () => {
+  await withPage(async (page, view) => {
+    await page.keyboard.press('p');
+    await page.selectOption('#saving-format', 'glb');
+    assert.match(await page.locator('#saving-note').innerText(), /Nobody has a fitted body yet/);
+    assert.ok(await page.locator('#saving-save').isDisabled());
+    assert.match((await request(view.port, '/people.glb')).text, /nobody has a fitted body/);
+    await page.keyboard.press('Escape');
+    assert.ok(await page.locator('#happened').isHidden());
+  }, ['--no-track']);
+  await withPage(
+    async (page, view) => {
+      await page.keyboard.press('p');
+      await page.locator('#saving-note', { hasText: 'Nobody was found yet' }).waitFor();
+      assert.ok(await page.locator('#saving-save').isDisabled());
+      assert.equal((await request(view.port, '/people.csv')).status, 404);
+      await page.keyboard.press('Escape');
+      await page.click('#tab-curves');
+      assert.match(await page.locator('#curves').innerText(), /Nobody was seen yet/);
+    },
+    ['--refine.min-score', '1'],
   );
 });
 
@@ -656,7 +873,7 @@ test('works with the keyboard alone', async () => {
       await page.keyboard.press('Tab');
       visited.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.textContent));
     }
-    for (const id of ['record', 'snapshot', 'theme', 'cloud', 'colouring', 'show-boxes', 'tab-people', 'play', 'speed']) {
+    for (const id of ['record', 'save-people', 'snapshot', 'theme', 'cloud', 'colouring', 'show-boxes', 'tab-people', 'play', 'speed', 'loop-from']) {
       assert.ok(visited.has(id), `${id} is reached by tab`);
     }
     await page.focus('#cloud');
@@ -673,6 +890,8 @@ test('works with the keyboard alone', async () => {
     await page.selectOption('#details select', { index: 1 });
     assert.ok((await page.locator('#details tbody tr').count()) > 10, 'joints of a set');
     await page.focus('#tab-people');
+    await page.keyboard.press('ArrowRight');
+    assert.ok(await page.locator('#curves').isVisible());
     await page.keyboard.press('ArrowRight');
     assert.ok(await page.locator('#stages').isVisible());
     await page.focus('#show-floor');
@@ -754,6 +973,9 @@ test('refuses foreign hosts, pages and tokens', async () => {
   assert.equal((await request(shared.port, '/stream', { Connection: 'Upgrade', Upgrade: 'websocket' })).status, 403);
   const allowed = await open(browser, `http://127.0.0.1:${shared.port}/?token=${token}`);
   await until(allowed, () => window.vesalius?.frame());
+  await allowed.keyboard.press('p');
+  await allowed.locator('#saving-note', { hasText: /person|people in/ }).waitFor();
+  assert.equal((await request(shared.port, '/people.csv')).status, 403);
   const link = await allowed.locator('#save-options').getAttribute('href');
   assert.equal((await request(shared.port, `/${link}`)).status, 200);
   await allowed.context().close();
