@@ -1,12 +1,14 @@
 // Curves of what is measured of somebody over time.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { ANGLES, History, Measure } from './history';
+import { History, Measure } from './history';
+import { ANGLES, inWords } from './marks';
 import { element } from './people';
 import { ViewState } from './protocol';
 
 const PAUSE_MS = 200;  // between drawings: frames come faster
 const HEIGHT_PX = 118;
+const FIRST_ANGLE = String(ANGLES.findIndex(([name]) => name === 'l_knee'));
 
 interface Line {
   measure: number;
@@ -69,7 +71,7 @@ export class Curves {
     private readonly clock: (at_s: number) => string,
   ) {
     const [person, people] = choice('Person', [], '');
-    const [angle, angles] = choice('Angle', ANGLES.map(({ name }, i) => [String(i), name]), '0');
+    const [angle, angles] = choice('Angle', ANGLES.map(([name], i) => [String(i), inWords(name)]), FIRST_ANGLE);
     const times: [string, string][] = [['10', '10 s'], ['60', '1 min'], ['600', '10 min'], ['all', 'all']];
     const [stretch, stretches] = choice('Time', times, '60');
     [this.person, this.angle, this.stretch] = [people, angles, stretches];
@@ -110,7 +112,7 @@ export class Curves {
       const measures = facts.lines.map(({ measure }) => this.measureOf(measure));
       const series = this.history.series(number, from_s, to_s, measures);
       plot.setData([series.at_s.map((at_s) => at_s - this.origin_s), ...series.values]);
-      const title = facts.lines[0].measure === Measure.angle ? `Angle of the ${ANGLES[Number(this.angle.value)].name}` : facts.title;
+      const title = facts.lines[0].measure === Measure.angle ? `Angle of the ${inWords(ANGLES[Number(this.angle.value)][0])}` : facts.title;
       const numbers = facts.lines.map(({ name }, i) => {
         const value = values?.[measures[i]] ?? NaN;
         return `${name}${name ? ' ' : ''}${Number.isNaN(value) ? '–' : `${value.toFixed(facts.decimals)} ${facts.unit}`}`;

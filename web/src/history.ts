@@ -1,4 +1,5 @@
 // Measurements of people over time, as far as they were seen on this page.
+import { ANGLES, anglesOf } from './marks';
 import { Frame, Person, Xyz } from './protocol';
 import { isHidden, numberOf, shownPeople } from './track';
 
@@ -8,17 +9,6 @@ const MOST_SAMPLES = 108000;
 const MOST_GAP_S = 2;
 const SET = 'nite15';
 
-/** Angles between the bones that meet in a joint, 180 degrees where they are stretched. */
-export const ANGLES = ['left', 'right'].flatMap((side) => {
-  const [joint] = side;
-  return [
-    { name: `${side} knee`, joints: ['hip', 'knee', 'foot'].map((name) => `${joint}_${name}`) },
-    { name: `${side} elbow`, joints: ['shoulder', 'elbow', 'hand'].map((name) => `${joint}_${name}`) },
-    { name: `${side} hip`, joints: ['shoulder', 'hip', 'knee'].map((name) => `${joint}_${name}`) },
-    { name: `${side} shoulder`, joints: ['hip', 'shoulder', 'elbow'].map((name) => `${joint}_${name}`) },
-  ];
-});
-
 /** What is measured; angles follow, in the order of ANGLES. */
 export enum Measure {
   height,
@@ -26,13 +16,6 @@ export enum Measure {
   score,
   confidence,
   angle,
-}
-
-function angleDegrees(a: Xyz, joint: Xyz, b: Xyz): number {
-  const u = a.map((value, i) => value - joint[i]);
-  const v = b.map((value, i) => value - joint[i]);
-  const dot = u.reduce((sum, value, i) => sum + value * v[i], 0);
-  return (Math.acos(Math.min(Math.max(dot / (Math.hypot(...u) * Math.hypot(...v)), -1), 1)) * 180) / Math.PI;
 }
 
 /** NaN is what is not known. */
@@ -46,10 +29,7 @@ function measured(person: Person, floor: Frame['floor']): Float32Array {
   const all = Object.values(joints);
   values[Measure.score] = 100 * person.score;
   values[Measure.confidence] = (100 * all.reduce((sum, joint) => sum + joint.confidence, 0)) / all.length;
-  ANGLES.forEach((angle, i) => {
-    const [a, joint, b] = angle.joints.map(place);
-    if (a && joint && b) values[Measure.angle + i] = angleDegrees(a, joint, b);
-  });
+  for (const angle of anglesOf(person, true)) values[Measure.angle + ANGLES.findIndex(([name]) => name === angle.name)] = angle.degrees;
   return values;
 }
 

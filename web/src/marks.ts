@@ -6,7 +6,7 @@ const ANGLE_SET = 'nite15';
 const AXIS_M = 0.09;
 
 /** Joints whose angle is told, each with the two points between which it is. */
-const ANGLES: [name: string, from: string, to: string][] = ['l', 'r'].flatMap((side): [string, string, string][] => [
+export const ANGLES: [name: string, from: string, to: string][] = ['l', 'r'].flatMap((side): [string, string, string][] => [
   [`${side}_shoulder`, `${side}_elbow`, `${side}_hip`],
   [`${side}_elbow`, `${side}_shoulder`, `${side}_hand`],
   [`${side}_hip`, `${side}_shoulder`, `${side}_knee`],
