@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -37,10 +38,11 @@ struct LoggedOne {
   float score;
   std::vector<LoggedJoint> joints;
   std::vector<LoggedBone> bones;  ///< empty without a fitted body
+  std::vector<float> shape;       ///< of the fitted body
 };
 
 LoggedOne logged(const TrackedPerson& tracked, std::size_t set, std::size_t index, bool followed) {
-  LoggedOne one{followed ? tracked.id : static_cast<int>(index), as_told(tracked.person.score), {}, {}};
+  LoggedOne one{followed ? tracked.id : static_cast<int>(index), as_told(tracked.person.score), {}, {}, {}};
   for (const Joint& joint : tracked.person.joints.at(set)) {
     const bool known = joint.state != State::none;
     one.joints.push_back(
@@ -52,6 +54,8 @@ LoggedOne logged(const TrackedPerson& tracked, std::size_t set, std::size_t inde
     one.bones.push_back(
         {as_told(bone.head), as_told(bone.tail), {as_told(q.x()), as_told(q.y()), as_told(q.z()), as_told(q.w())}});
   }
+  std::ranges::transform(tracked.body->shape, std::back_inserter(one.shape),
+                         [](float value) { return as_told(value); });
   one.joints.shrink_to_fit();
   one.bones.shrink_to_fit();
   return one;
@@ -67,7 +71,9 @@ RecordedPerson recorded(const LoggedOne& one, bool bodies) {
       joints.push_back({joint.state, vector_of(joint.at), joint.confidence});
     }
   } else if (!one.bones.empty()) {
-    std::vector<FittedBone>& bones = person.body.emplace().bones;
+    FittedBody& body = person.body.emplace();
+    body.shape = one.shape;
+    std::vector<FittedBone>& bones = body.bones;
     for (const LoggedBone& logged_bone : one.bones) {
       FittedBone& bone = bones.emplace_back();
       bone.head = vector_of(logged_bone.head);
@@ -104,7 +110,8 @@ struct PeopleLog::LoggedFrame {
     constexpr std::size_t kNode = 128;  // of the map, the queue and the heap
     std::size_t sum = sizeof(LoggedFrame) + kNode + name.capacity() + people.capacity() * sizeof(LoggedOne);
     for (const LoggedOne& one : people) {
-      sum += one.joints.capacity() * sizeof(LoggedJoint) + one.bones.capacity() * sizeof(LoggedBone);
+      sum += one.joints.capacity() * sizeof(LoggedJoint) + one.bones.capacity() * sizeof(LoggedBone) +
+             one.shape.capacity() * sizeof(float);
     }
     return sum;
   }

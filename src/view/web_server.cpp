@@ -281,7 +281,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return refuse(request, http::status::service_unavailable, "others are saving; try again");
     ++hub_.made;
     is_made_ = true;
-    net::post(*hub_.maker, [self = shared_from_this(), request, how]() mutable {
+    net::post(*hub_.maker, [self = shared_from_this(), request = Request(request), how = std::function(how)]() mutable {
       WebResponse made;
       try {
         made = how();
@@ -290,7 +290,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       }
       // The connection ends in the server's thread.
       const auto back = self->stream_.get_executor();
-      net::post(back, [self = std::move(self), request, made = std::move(made)]() mutable {
+      net::post(back, [self = std::move(self), request = std::move(request), made = std::move(made)]() mutable {
         self->send(request, std::move(made));
       });
     });

@@ -82,11 +82,11 @@ TEST_F(RealAssets, AreFetchedFromAServer) {
   const Outcome again = run_program(command);
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("/makehuman: 0 files fetched, 238 were there"));
-  EXPECT_THAT(again.err, HasSubstr("/mocap: 1 files fetched, 464 were there"));
+  EXPECT_THAT(again.err, HasSubstr("/mocap: 1 file fetched, 464 were there"));
   EXPECT_EQ(run_program("assets -q --dir " + home() + " --mirror /").err, "") << "nothing is looked for";
   fs::remove(home() + "/mocap/manifest.csv");
   const Outcome enclosed = run_program("assets motions --dir " + home());
-  EXPECT_THAT(enclosed.err, HasSubstr("/mocap: 1 files fetched, 464 were there")) << "the program holds it";
+  EXPECT_THAT(enclosed.err, HasSubstr("/mocap: 1 file fetched, 464 were there")) << "the program holds it";
   expect_whole(asset_package("mocap"), home());
 }
 

@@ -117,6 +117,8 @@ class Wrapper:
         if command == "export":
             for name in self.positional(words):
                 self.place(name, "followed.mcap" if name.endswith(".mcap") else "people.jsonl")
+            for name in self.values(words, "--images"):
+                self.place(name, "frames/rgb")
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")

@@ -268,7 +268,7 @@ class Case:
             if time.monotonic() > end:
                 fail(f"{self.name}: nothing for {seconds} s")
             if source is None or source.poll() is not None:
-                source = subprocess.Popen(self.vesalius(clip, "--node", "source", "--rate", "2", "--quiet"))
+                source = subprocess.Popen(self.vesalius(clip, "--node", "source", "--rate", "2", "--stamps", "frame", "--quiet"))
                 self.running.append(source)
             time.sleep(0.1)
         return source
