@@ -420,10 +420,11 @@ const KEYS: Record<string, () => void> = {
   '?': () => get<HTMLDialogElement>('help').showModal(),
 };
 
-/** Whether the element with the focus uses this key itself. */
+/** Whether the element with the focus, or a dialog, uses this key itself. A dialog loses the focus where its button is switched off. */
 function isTakenBy(target: HTMLElement, key: string): boolean {
   const isArrow = /^(Arrow|Home|End)/.test(key);
-  if (target.closest('dialog, select, input:not([type=checkbox], [type=range])')) return true;
+  if (document.querySelector('dialog[open]')) return true;
+  if (target.closest('select, input:not([type=checkbox], [type=range])')) return true;
   if (target.closest('input[type=range], [role=tablist]')) return isArrow;
   return target.closest('button, a, summary, input') !== null && key === ' ';
 }
