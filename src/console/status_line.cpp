@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "console/text_sink.h"
+#include "io/files/plain_text.h"
 
 namespace vesalius::cli {
 namespace {
@@ -64,7 +65,8 @@ void LateLines::print(Progress& progress) {
   for (const std::string& line : lines) say("vesalius: " + one_line(line));
 }
 
-Progress::Progress(int total, bool shown, std::string unit) : total_(total), line_(shown), unit_(std::move(unit)) {}
+Progress::Progress(int total, bool shown, std::string unit, std::string units)
+    : total_(total), line_(shown), unit_(std::move(unit)), units_(std::move(units)) {}
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
@@ -75,10 +77,9 @@ void Progress::set(int done, int total) {
   total_ = total;
   if (!line_.due()) return;
   const double rate = done_ / seconds();
-  const bool one = done_ == 1 && unit_ == "frames";
-  std::string line = fmt::format("{} {}, {:.1f} {}/s", done_, one ? "frame" : unit_, rate, unit_);
+  std::string line = fmt::format("{}, {:.1f} {}/s", counted(done_, unit_, units_), rate, units_);
   if (total_ >= 0 && rate > 0.0) {
-    line = fmt::format("{0} of {1} {2}, {3:.1f} {2}/s, {4:.0f} s left", done_, total_, unit_, rate,
+    line = fmt::format("{0} of {1} {2}, {3:.1f} {2}/s, {4:.0f} s left", done_, total_, units_, rate,
                        (total_ - done_) / rate);
   }
   line_.show(line);

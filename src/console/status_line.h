@@ -39,8 +39,9 @@ class StatusLine {
 /// Shows the number of finished items, the rate and the time left on a StatusLine.
 class Progress {
  public:
-  /// A negative `total` means that it is not known. Nothing is shown if `shown` is false. `unit` names the items.
-  Progress(int total, bool shown, std::string unit = "frames");
+  /// A negative `total` means that it is not known. Nothing is shown if `shown` is false. `unit` and `units` name one
+  /// item and several.
+  Progress(int total, bool shown, std::string unit = "frame", std::string units = "frames");
 
   void step();
   /// Sets both numbers, for work whose items are not counted one by one or whose total becomes known later.
@@ -56,7 +57,7 @@ class Progress {
 
   int total_;
   StatusLine line_;
-  std::string unit_;
+  std::string unit_, units_;
   int done_ = 0;
   Clock::time_point start_ = Clock::now();
 };

@@ -43,7 +43,7 @@ void print_list(const std::string& folder) {
 }
 
 void install(const AssetPackage& package, const std::string& folder, const Arguments& arguments) {
-  Progress progress(-1, !arguments.quiet, "kB");
+  Progress progress(-1, !arguments.quiet, "kB", "kB");
   const InstallWatch watch = [&](std::uint64_t done, std::uint64_t total) {
     if (total > 0) progress.set(int(done / kKilobyte), int(total / kKilobyte));
     return !interrupted();
