@@ -5,6 +5,7 @@
 
 #include "export/moving_skeleton.h"
 #include "export/people_record.h"
+#include "export/write_gltf.h"
 #include "export/write_people.h"
 #include "vesalius/error.h"
 
