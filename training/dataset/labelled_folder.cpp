@@ -198,6 +198,7 @@ std::string LabelledFolder::file(const char* kind, std::uint64_t index, const ch
 LabelledFrame LabelledFolder::read(std::uint64_t index, bool with_colour) const {
   LabelledFrame labelled;
   labelled.frame = frames_.read(index, with_colour);
+  labelled.frame.up.reset();  // as in shards: it is truth
   labelled.labels = read_png8(file("labels", index, ".png"));
   labelled.person = read_png8(file("person", index, ".png"));
   read_people(file("truth", index, ".json"), body_, labelled);
@@ -252,10 +253,14 @@ void LabelledExporter::write(const LabelledFrame& labelled) {
   };
   // The writer of frames would number the second one, and its truth would replace the first one's.
   if (fs::exists(path("truth", ".json"))) throw Error(fmt::format("{}: two frames named {}", folder_, name));
-  frames_->write(labelled.frame);
+  Frame frame = labelled.frame;
+  frame.up = labelled.up;
+  frames_->write(frame);
   write_png(labelled.labels, path("labels", ".png"));
   write_png(labelled.person, path("person", ".png"));
   write_file_atomically(path("truth", ".json"), truth_json(labelled, body_, joints_));
 }
+
+void LabelledExporter::close() { frames_->close(); }
 
 }  // namespace vesalius

@@ -52,7 +52,7 @@ bool is_labelled_folder(const std::string& path);
 /// Writes labelled frames as plain files that any program can read: depth/, rgb/ and meta.json in the layout of
 /// `open_source`, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres and
 /// joints in metres, postures, the upward direction; optical frame; the frame's time, the camera's height and pose),
-/// and body.toml, which names the labels. Of clips also clips.json: `frames_per_clip` and `rate_hz`.
+/// and body.toml, which names the labels. Of clips also clips.json: `frames_per_clip` and `rate_hz`, and imu.csv.
 class LabelledExporter {
  public:
   /// Creates `folder`. Throws Error if it cannot be created or already has files in it. `joints` names the joints of
@@ -63,6 +63,8 @@ class LabelledExporter {
   /// Writes one frame. Throws Error as FrameWriter::write does, and if the truth does not fit the frame, the body or
   /// the joints.
   void write(const LabelledFrame& labelled);
+  /// Writes what lists all frames, as FrameWriter::close does.
+  void close();
 
  private:
   std::string folder_;

@@ -6,7 +6,6 @@
 namespace vesalius {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.80665;
 constexpr std::size_t kCovariance = 9;
 /// The first number of a covariance whose quantity is not known.
 constexpr double kNotKnown = -1.0;

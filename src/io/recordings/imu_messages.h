@@ -11,6 +11,9 @@
 
 namespace vesalius {
 
+/// What an accelerometer measures at rest.
+inline constexpr double kGravity_m_s2 = 9.80665;
+
 /// What an accelerometer measured: sensor_msgs/Imu. At rest that is 9.8 m/s² away from the ground.
 struct Acceleration {
   std::int64_t time_ns = 0;                        ///< time of the header; 0 = not given

@@ -318,7 +318,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   std::set<std::string> names;
   for (const Picture& p : colours) names.insert(p.stem);
   note_missing_colours(list, names.size());
-  std::vector<std::string> folders = depth_folder ? std::vector<std::string>{folder} : camera_folders(folder);
+  const std::vector<std::string> folders = depth_folder ? std::vector<std::string>{folder} : camera_folders(folder);
   list.facts = find_camera_facts(options, folders);
   for (const char* above : {"..", "../.."}) {  // Replica: the pictures are two folders below their calibration
     if (list.facts.has_focal() || !list.facts.sensor.empty() || !list.facts.lacks.empty()) break;
@@ -329,6 +329,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   }
   if (list.facts.rate_hz && !list.frames.front().time_s) add_times(list, *list.facts.rate_hz);
   add_items(list);
+  add_up(list, folders);
   if (colours.empty()) note_colour_not_taken(list);
   return list;
 }

@@ -15,6 +15,8 @@
 #include "io/files/depth_picture.h"
 #include "io/files/plain_text.h"
 #include "io/files/stored_depth.h"
+#include "io/recordings/imu_messages.h"
+#include "io/sources/acceleration_file.h"
 #include "io/sources/colour_camera.h"
 #include "io/sources/fact_tree.h"
 #include "io/sources/source_items.h"
@@ -177,6 +179,9 @@ bool counts_frames(const std::vector<TumEntry>& entries) {
   });
 }
 
+/// Times beyond those of 64 bits count as the ends.
+std::int64_t nanoseconds(double time_s) { return std::llround(std::clamp(time_s, -9e9, 9e9) * 1e9); }
+
 /// Both lists merged by time as a linked list. When a pair is taken out, the entries beside it become neighbours; so
 /// the closest remaining pair is always a pair of neighbours.
 struct Merged {
@@ -294,6 +299,7 @@ Frame FrameListReader::read(std::size_t index, bool with_colour) const {
               camera_,
               to_millimetres(stored, scale.value_or(list_.default_scale), scale.has_value()),
               {}};
+  frame.up = files.up;
   if (rectification_) frame.depth = rectification_->depth(frame.depth);
   if (!with_colour || files.colour.empty()) return frame;
   ColourImage colour = read_colour(files.colour);
@@ -312,6 +318,35 @@ void add_items(FrameList& list) {
     if (!files.colour.empty()) colours.push_back(files.colour);
   }
   list.items = items_of(list.place, depths, colours);
+}
+
+void add_up(FrameList& list, const std::vector<std::string>& folders) {
+  std::string path;
+  for (const std::string& folder : folders) {
+    const fs::path here = fs::path(folder) / kAccelerationFile;
+    std::error_code none;
+    if (path.empty() && fs::exists(here, none)) path = here.string();
+  }
+  if (path.empty()) return;
+  const std::vector<TimedAcceleration> measured = parse_accelerations(read_file(path, kMaxListBytes), path);
+  const bool has_times = list.frames.front().time_s.has_value();
+  const std::string why =
+      has_times ? "" : "frames have no times, expected names that are times, or rate_hz in meta.json";
+  if (!has_times) list.notes.push_back(fmt::format("{}: not used: {}", path, why));
+  for (SourceItem& item : list.items) {
+    if (item.name != kAccelerationFile) continue;
+    item.use = has_times ? "up" : "";
+    item.why = why;
+  }
+  if (!has_times) return;
+  UpHistory history;
+  auto next = measured.begin();
+  for (FrameFiles& frame : list.frames) {
+    const std::int64_t time_ns = nanoseconds(*frame.time_s);
+    for (; next != measured.end() && nanoseconds(next->time_s) <= time_ns; ++next)
+      history.add(nanoseconds(next->time_s), next->m_s2);
+    frame.up = history.up_at(time_ns);
+  }
 }
 
 std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
@@ -407,6 +442,7 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
       if (std::ranges::find(*lists, lower(item.name)) != lists->end()) item.use = "list of frames";
     }
   }
+  add_up(list, {folder});
   return list;
 }
 

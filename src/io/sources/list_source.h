@@ -20,9 +20,10 @@ namespace vesalius {
 /// The files of one frame.
 struct FrameFiles {
   std::string name;
-  std::optional<double> time_s;  ///< seconds, as in Frame
-  std::string depth;             ///< path of a picture that read_depth reads
-  std::string colour;            ///< path of a PNG, JPEG or PPM; empty = none
+  std::optional<double> time_s;                      ///< seconds, as in Frame
+  std::string depth;                                 ///< path of a picture that read_depth reads
+  std::string colour;                                ///< path of a PNG, JPEG or PPM; empty = none
+  std::optional<Eigen::Vector3f> up = std::nullopt;  ///< as in Frame
 };
 
 /// Frames whose depth and colour pictures are files of their own, in order. Either all have times, and they rise, or
@@ -39,6 +40,10 @@ struct FrameList {
 
 /// Fills the items of a list with what its folder, the `place`, holds.
 void add_items(FrameList& list);
+
+/// Gives frames with times the upward direction at theirs (UpHistory) by the first kAccelerationFile in `folders`, if
+/// there is one; without times it adds a note. Throws Error as parse_accelerations does.
+void add_up(FrameList& list, const std::vector<std::string>& folders);
 
 /// Reads the frames of a list in any order. It may be used from several threads.
 class FrameListReader {

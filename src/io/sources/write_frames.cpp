@@ -8,9 +8,14 @@
 #include <map>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "io/files/atomic_file.h"
+#include "io/files/plain_text.h"
+#include "io/recordings/imu_messages.h"
+#include "io/sources/acceleration_file.h"
 #include "io/sources/camera_file.h"
+#include "io/sources/fact_tree.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
@@ -56,13 +61,20 @@ class FolderWriter : public FrameWriter {
       throw Error(fmt::format("{}: frame {} has another camera than the first", root_.string(), name));
     }
     write_pictures(frame, name);
+    const auto time_s = time_when_read(frame, name);
+    if (frame.up && time_s) accelerations_.push_back({*time_s, kGravity_m_s2 * frame.up->cast<double>()});
   }
 
-  void close() override {}
+  void close() override {
+    if (accelerations_.empty()) return;
+    write_file_atomically((root_ / kAccelerationFile).string(), serialise_accelerations(accelerations_));
+  }
 
  protected:
   virtual std::string file_name(const Frame& frame) { return frame.name; }
   virtual void write_pictures(const Frame& frame, const std::string& name) = 0;
+  /// Returns the time that a reader of the folder gives a frame, seconds.
+  virtual std::optional<double> time_when_read(const Frame& frame, const std::string& name) = 0;
 
   void write_pngs(const Image<std::uint16_t>& depth, const ColourImage& colour, const std::string& name) const {
     make_folder(root_ / "depth");
@@ -88,16 +100,29 @@ class FolderWriter : public FrameWriter {
   std::optional<float> rate_hz_;
   std::optional<Camera> camera_;
   std::map<std::string, int> names_;  ///< how many frames were named so
+  std::vector<TimedAcceleration> accelerations_;
 };
 
 class PngWriter final : public FolderWriter {
  public:
-  PngWriter(const fs::path& root, std::optional<float> rate_hz) : FolderWriter(root, 1000.F, rate_hz) {}
+  PngWriter(const fs::path& root, std::optional<float> rate_hz)
+      : FolderWriter(root, 1000.F, rate_hz), rate_hz_(rate_hz) {}
 
  private:
+  // Of several clips in a folder each begins at 0, and names or places count on.
+  std::optional<double> time_when_read(const Frame& frame, const std::string& name) override {
+    const int place = count_++;
+    if (!rate_hz_) return frame.time_s;
+    return (std::ranges::all_of(name, is_digit) ? number_of(std::string_view(name)) : std::nullopt).value_or(place) /
+           *rate_hz_;
+  }
+
   void write_pictures(const Frame& frame, const std::string& name) override {
     write_pngs(frame.depth, frame.colour, name);
   }
+
+  std::optional<float> rate_hz_;
+  int count_ = 0;
 };
 
 class TumWriter final : public FolderWriter {
@@ -106,6 +131,7 @@ class TumWriter final : public FolderWriter {
       : FolderWriter(root, options.tum_units_per_m), options_(options) {}
 
   void close() override {
+    FolderWriter::close();
     write_file_atomically((root() / "depth.txt").string(), "# depth maps\n# timestamp filename\n" + depth_list_);
     if (!colour_list_.empty()) {
       write_file_atomically((root() / "rgb.txt").string(), "# color images\n# timestamp filename\n" + colour_list_);
@@ -127,6 +153,10 @@ class TumWriter final : public FolderWriter {
     const std::string_view time = std::string_view(name).substr(0, name.find('_'));
     depth_list_ += fmt::format("{} depth/{}.png\n", time, name);
     if (!frame.colour.empty()) colour_list_ += fmt::format("{} rgb/{}.png\n", time, name);
+  }
+
+  std::optional<double> time_when_read(const Frame& /*frame*/, const std::string& name) override {
+    return number_of(std::string_view(name).substr(0, name.find('_')));
   }
 
   Image<std::uint16_t> stored(const Frame& frame) const {

@@ -24,7 +24,8 @@ struct WriteOptions {
   std::optional<float> frame_rate;
 };
 
-/// Writes frames into a folder without loss. All frames of one folder share one camera.
+/// Writes frames into a folder without loss; where up is in frames with times goes into imu.csv. All frames of one
+/// folder share one camera.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;

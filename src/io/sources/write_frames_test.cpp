@@ -143,5 +143,30 @@ TEST(WriteFrames, RefusesFramesThatDoNotFitTheFolder) {
   EXPECT_THROW(make_frame_writer(FrameFormat::tum, folder / "coarse", coarse), UsageError);
 }
 
+TEST(WriteFrames, KeepsWhereUpIs) {
+  const TemporaryFolder folder;
+  for (const FrameFormat format : {FrameFormat::folder, FrameFormat::tum}) {
+    std::vector<Frame> frames = sample_frames();
+    for (int i = 0; i < 3; ++i) {
+      frames[i].name = "00" + std::to_string(2 * i);
+      frames[i].time_s = 2 * i / 4.0;
+      if (i != 1) frames[i].up = Eigen::Vector3f(0.6F, -0.8F, 0.1F * float(i)).normalized();
+    }
+    WriteOptions options;
+    options.frame_rate = 4.F;
+    const std::string path = folder / std::to_string(static_cast<int>(format));
+    write_all(format, path, frames, options);
+    const std::vector<Frame> got = read_all(path);
+    ASSERT_EQ(got.size(), 3U);
+    for (const int i : {0, 2}) {
+      ASSERT_TRUE(got[i].up) << i;
+      EXPECT_TRUE(got[i].up->isApprox(*frames[i].up, 1e-4F)) << i;
+    }
+    EXPECT_FALSE(got[1].up) << "the first is half a second old";
+  }
+  write_all(FrameFormat::folder, folder / "without", sample_frames());
+  EXPECT_FALSE(fs::exists(folder / "without/imu.csv"));
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -58,6 +58,7 @@ void write_folder(const Arguments& arguments, const std::string& folder, const F
   Progress progress(count, !arguments.quiet);
   make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
+  exporter.close();
   progress.clear();
   if (!arguments.quiet) say(folder + ": " + counted(progress.done(), "frame"));
 }
