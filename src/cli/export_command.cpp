@@ -16,6 +16,7 @@
 #include "export/write_people.h"
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
+#include "io/files/depth_picture.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/open_recording.h"
 #include "vesalius/error.h"
@@ -105,6 +106,7 @@ void find_pictures(const std::string& folder, PeopleRecord& record) {
   }
   const RecordedFrame& first = record.frames.front();
   const std::string path = (fs::path(folder) / first.picture).string();
+  if (may_be_depth(path)) throw Error(path + ": a picture of 16 bits, expected colour or grey of 8");
   const ColourImage picture = read_colour(path);
   if (picture.width() != first.camera.width || picture.height() != first.camera.height) {
     throw Error(

@@ -63,6 +63,7 @@ TEST_F(Export, NamesPicturesThatOpen) {
   EXPECT_TRUE(std::filesystem::is_regular_file(path("found/colour/" + name))) << name;
   refused(from + " --to " + path("x.json") + " --format coco --images " + path("nothing"), 1, "no picture of frame");
   refused(from + " --to " + path("x.csv") + " --images " + path("found"), 2, "--images goes with coco");
+  refused(from + " --to " + path("x.json") + " --format coco --images " + frames() + "/depth", 1, "expected colour");
   write_png(ColourImage(8, 6), path("found/colour/" + name));
   refused(from + " --to " + path("x.json") + images, 1, "pixels, expected ");
 }
