@@ -206,7 +206,7 @@ const demo = join(root, 'data/demo');
 test('what happened is listed and marked, and a click goes there', async () => {
   await withPage(
     async (page, view) => {
-      for (let i = 0; i < 32; ++i) await step(page);  // no frame is dropped, and somebody falls
+      for (let i = 0; i < 48; ++i) await step(page);  // no frame is dropped, and somebody falls
       const fell = () => window.vesalius.happened().events.find(({ what }) => what === 'fallen');
       await until(page, fell);
       const { at_s, id } = await page.evaluate(fell);
