@@ -52,7 +52,6 @@ export class SavePeople {
     }
     this.offer();
     if (this.known.people.some(({ id }) => id === selected)) this.person.value = String(selected);
-    this.note.textContent = this.told(this.known);
   }
 
   private told({ frames, forgotten, most_bytes, people }: Known): string {

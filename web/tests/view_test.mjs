@@ -394,6 +394,11 @@ test('saves people as files of other programs', async () => {
 
 test('says so where there is nobody to save, or no body', async () => {
   await withPage(async (page, view) => {
+    // The format is chosen before the program has answered.
+    await page.route('**/people.json*', async (route) => {
+      await until(page, () => document.getElementById('saving-format').value === 'glb');
+      await route.continue();
+    });
     await page.keyboard.press('p');
     await page.selectOption('#saving-format', 'glb');
     await page.locator('#saving-note', { hasText: 'Nobody has a fitted body yet' }).waitFor();
