@@ -52,7 +52,7 @@ TEST(ColourEncodings, Planes) {
     EXPECT_EQ(colour(1, 1), (Rgb{255, 0, 0})) << encoding;
     EXPECT_EQ(colour(2, 0), (Rgb{255, 255, 255})) << encoding;
     EXPECT_EQ(colour(2, 1), (Rgb{0, 0, 0})) << encoding;
-    EXPECT_THAT(error_of([&] { decoded(encoding, 4, 2, 4, luminance); }),
+    EXPECT_THAT(error_of([&, name = encoding] { decoded(name, 4, 2, 4, luminance); }),
                 HasSubstr("expected even sides and 12 bytes"));
   }
 }
