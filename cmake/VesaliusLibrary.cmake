@@ -100,6 +100,10 @@ function(vesalius_together library)
   if(CMAKE_BUILD_TYPE STREQUAL Release)
     set_target_properties(vesalius_${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
     set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+      # It takes these files for headers, whose unnamed namespaces it warns of.
+      target_compile_options(vesalius_${library} PRIVATE -Wno-subobject-linkage)
+    endif()
   endif()
 endfunction()
 
