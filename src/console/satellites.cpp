@@ -32,14 +32,13 @@ std::vector<std::string> satellite_names() {
 std::string absent_command(const std::string& command) {
   const std::vector<std::string> workshop{"train", "synth", "evaluate", "compare", "assets"};
   const bool here = std::ranges::any_of(satellites(), [&](const Satellite& s) { return s.name == command; });
+  std::string without;
   if (here) return "";
-  if (std::ranges::find(workshop, command) != workshop.end()) {
-    return command + " is not in this build, which was made without training (VESALIUS_TRAINING=OFF)";
-  }
-  if (command == "view")
-    return "view is not in this build, which was made without the viewer (VESALIUS_VIEW=OFF, or no Boost)";
-  if (command == "ros2") return "ros2 is not in this build, which was made without Cyclone DDS";
-  return "";
+  if (std::ranges::find(workshop, command) != workshop.end()) without = "training (VESALIUS_TRAINING=OFF)";
+  if (command == "view") without = "the viewer (VESALIUS_VIEW=OFF, or no Boost)";
+  if (command == "ros2") without = "Cyclone DDS";
+  if (without.empty()) return "";
+  return command + " is not in this build, which was made without " + without + "; ./dev build makes the whole program";
 }
 
 }  // namespace vesalius::cli
