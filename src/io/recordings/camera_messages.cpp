@@ -109,7 +109,7 @@ bool is_orbbec_profile(const RecordedTopic& topic) {
 
 /// Reads an OBStreamProfileInfo after its header.
 Calibration parse_orbbec_profile(MessageFields& fields, const RecordedTopic& topic) {
-  constexpr std::array kModels{
+  constexpr std::array kOrbbecModels{
       "", "modified_brown_conrady", "inverse_brown_conrady", "brown_conrady", "rational_polynomial", "kannala_brandt4"};
   constexpr int kPose = 12;
   const auto reals = [&](int count, const char* what) {
@@ -128,8 +128,8 @@ Calibration parse_orbbec_profile(MessageFields& fields, const RecordedTopic& top
   const std::vector<double> k = reals(4, "the intrinsics");
   const std::vector<double> d = reals(8, "the distortion");
   const std::uint8_t model = fields.u8("the distortion model");
-  calibration.model = model < kModels.size() ? kModels[model] : fmt::format("number {}", model);
-  const bool is_fisheye = model + 1U == kModels.size();
+  calibration.model = model < kOrbbecModels.size() ? kOrbbecModels[model] : fmt::format("number {}", model);
+  const bool is_fisheye = model + 1U == kOrbbecModels.size();
   if (is_fisheye) {
     calibration.distortion.assign(d.begin(), d.begin() + 4);
   } else {
