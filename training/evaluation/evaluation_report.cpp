@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -22,8 +24,8 @@ namespace {
 constexpr std::pair kShares{0.0, 1.02};  ///< range of a plot
 
 /// The families that are columns of a table whose rows are parts or joints.
-constexpr std::array kPartColumns{Metric::part_seen, Metric::pixel_recall, Metric::pixel_recall_inside,
-                                  Metric::centre_at_10cm};
+constexpr std::array kPartColumns{Metric::part_seen,      Metric::pixel_recall,    Metric::pixel_recall_inside,
+                                  Metric::centre_at_10cm, Metric::part_right_of_4, Metric::part_right_of_8};
 constexpr std::array kJointColumns{Metric::joint_at_10cm, Metric::joint_error, Metric::joint_up,
                                    Metric::joint_up_placed};
 
@@ -121,6 +123,23 @@ void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Do
                  kShares});
 }
 
+/// Adds how often each part of people found is right, as the paper's Figs 10 and 11.
+void add_part_bars(const std::vector<Estimate>& estimates, const BodyModel& body, Document& document) {
+  BarPlot plot{"Share of people found, among those on whom the part is visible, that have it right", {}, {}};
+  for (const BodyPart& part : body.parts) plot.names.push_back(part.name);
+  for (const auto& [metric, name] : {std::pair{Metric::part_right_of_4, "found with at least 4 parts"},
+                                     std::pair{Metric::part_right_of_8, "with at least 8"}}) {
+    std::vector<double> shares;
+    for (const std::string& part : plot.names) {
+      const Estimate* estimate = find_estimate(estimates, metric, part);
+      shares.push_back(estimate != nullptr ? estimate->value : std::numeric_limits<double>::quiet_NaN());
+    }
+    const auto known = [](double share) { return !std::isnan(share); };
+    if (std::ranges::any_of(shares, known)) plot.series.emplace_back(name, std::move(shares));
+  }
+  if (!plot.series.empty()) document.bars(plot);
+}
+
 /// Adds how many of the joints given out with each confidence are right: on the diagonal it means what it says.
 void add_reliability(const std::vector<Estimate>& estimates, Document& document) {
   LinePlot plot{"Share of joints that are right by the confidence they were given with",
@@ -201,6 +220,7 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   const std::vector<Estimate> estimates = set.metrics.estimates();
   add_tables(estimates, document);
   add_detection_curves(set, evaluation, document);
+  add_part_bars(estimates, evaluation.body, document);
   add_reliability(estimates, document);
   add_precision(set.joint_precision, "joint", document);
   add_precision(set.centre_precision, "part's centre", document);

@@ -31,6 +31,8 @@ enum class Metric {
   mask_iou_where_found,
   part_seen,  ///< family
   part_mean_seen,
+  part_right_of_4,  ///< family
+  part_right_of_8,  ///< family
   parts_right,
   parts_right_upper,
   missing_right,
@@ -137,6 +139,8 @@ inline constexpr auto kMetrics = [] {
       {M::mask_iou_where_found, "mask.iou_where_found", "mask IoU where found"},
       {M::part_seen, "part.seen.*", "parts seen", share, higher_is_better, trials},
       {M::part_mean_seen, "part.mean_seen", "parts seen on average", share, higher_is_better, mean, M::part_seen},
+      {M::part_right_of_4, "part.right_of_4.*", "right, found with 4 parts", share, higher_is_better, trials},
+      {M::part_right_of_8, "part.right_of_8.*", "right, found with 8 parts", share, higher_is_better, trials},
       {M::parts_right, "parts.right", "visible parts right"},
       {M::parts_right_upper, "parts.right_upper", "visible upper parts right"},
       {M::missing_right, "missing.right", "parts not observed that are predicted right"},

@@ -92,6 +92,10 @@ DetectionPoint point_at(const DetectionLog& log, double threshold, double min_sc
           share(sum.right, sum.visible), share(sum.right_upper, sum.visible_upper)};
 }
 
+bool is_right(const SkeletonPart& part, const Vector3f& visible) {
+  return part.state == State::observed && double((part.centre - visible).norm()) <= kPartTolerance_m;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> visible_parts(const TrueFrame& frame, int person, const BodyModel& body) {
@@ -123,9 +127,8 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
   for (std::size_t p = 0; p < skeleton.parts.size(); ++p) {
     const bool known = !visible.empty();
     if (known && visible[p].hasNaN()) continue;
-    const bool observed = skeleton.parts[p].state == State::observed;
-    const bool right =
-        observed && (!known || double((skeleton.parts[p].centre - visible[p]).norm()) <= kPartTolerance_m);
+    const SkeletonPart& part = skeleton.parts[p];
+    const bool right = known ? is_right(part, visible[p]) : part.state == State::observed;
     ++counts.visible;
     counts.right += right ? 1 : 0;
     if (!body.parts[p].upper_body) continue;
@@ -133,6 +136,18 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
     counts.right_upper += right ? 1 : 0;
   }
   return counts;
+}
+
+MetricTerms found_part_terms(const Skeleton& skeleton, const std::vector<Eigen::Vector3f>& visible,
+                             const BodyModel& body) {
+  MetricTerms terms;
+  for (const auto& [metric, least] : {std::pair{Metric::part_right_of_4, 4}, std::pair{Metric::part_right_of_8, 8}}) {
+    for (std::size_t p = 0; p < visible.size() && skeleton.found >= least; ++p) {
+      if (visible[p].hasNaN()) continue;
+      terms.push_back({{metric, int(p), body.parts[p].name}, is_right(skeleton.parts[p], visible[p]) ? 1.0 : 0.0, 1.0});
+    }
+  }
+  return terms;
 }
 
 MetricTerms visible_part_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,

@@ -33,6 +33,11 @@ std::vector<Eigen::Vector3f> visible_parts(const TrueFrame& frame, int person, c
 /// visible and an observed one as right.
 PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector3f>& visible, const BodyModel& body);
 
+/// Returns how often each visible part of somebody who is found is right, if the skeleton has at least four parts, and
+/// if it has eight (the paper's Figs 11 and 10).
+MetricTerms found_part_terms(const Skeleton& skeleton, const std::vector<Eigen::Vector3f>& visible,
+                             const BodyModel& body);
+
 /// Returns how many of the visible parts of the expected people are right, of all parts and of the upper body. A person
 /// who was missed (null) has none right. Frames without labels have no such terms.
 MetricTerms visible_part_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,

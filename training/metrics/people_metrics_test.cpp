@@ -75,6 +75,23 @@ TEST(CountParts, CountsAPartAsRightIfItIsObservedNearby) {
   EXPECT_EQ(on_trust.right_upper, 2);
 }
 
+TEST(FoundPartTerms, CountVisiblePartsOfPeopleWithEnoughParts) {
+  const std::vector<Eigen::Vector3f> visible = visible_parts(frame_of_pixels(), 0, paper_body());
+  Skeleton skeleton =
+      person_with({{0, {-0.05F, 0, 1.1F}}, {10, {0.025F, 0, 1.2F}}, {11, {0, 0, 1}}}, Mask(4, 1, 1)).skeleton;
+  const auto terms_with = [&](int parts) {
+    skeleton.found = parts;
+    return found_part_terms(skeleton, visible, paper_body());
+  };
+  EXPECT_TRUE(terms_with(3).empty());
+  EXPECT_EQ(terms_with(4).size(), 2U);  // the arm cannot be seen
+  EXPECT_DOUBLE_EQ(value_of(terms_with(4), "part.right_of_4.l_foot"), 1.0);
+  EXPECT_DOUBLE_EQ(value_of(terms_with(4), "part.right_of_4.neck"), 0.0);  // 20 cm off
+  EXPECT_EQ(terms_with(7).size(), 2U);
+  EXPECT_DOUBLE_EQ(value_of(terms_with(8), "part.right_of_8.l_foot"), 1.0);
+  EXPECT_DOUBLE_EQ(value_of(terms_with(8), "part.right_of_4.l_foot"), 1.0);
+}
+
 TEST(VisiblePartTerms, CountNoPartOfMissedPeopleAsRight) {
   const TrueFrame frame = frame_of_pixels();
   const Person person = person_with({{10, {0.025F, 0, 1.F}}}, Mask(4, 1, 1));

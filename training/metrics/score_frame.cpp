@@ -202,6 +202,9 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
       std::vector<Eigen::Vector3f> visible;
       if (!frame.truth.labels.empty()) visible = visible_parts(frame, matches[i].person, body());
       judged.counts = count_parts(*proposals[i].skeleton, visible, body());
+      if (judged.score >= options_.detect.refine.min_score) {
+        append(score.terms, found_part_terms(*proposals[i].skeleton, visible, body()));
+      }
     }
     score.proposals.push_back(judged);
   }

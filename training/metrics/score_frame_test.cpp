@@ -102,6 +102,7 @@ TEST(FrameScorer, GivesPerfectMetricsForPerfectLabels) {
   EXPECT_GT(value(score, "pixels.recall.l_chest"), 0.9);
   EXPECT_DOUBLE_EQ(value(score, "part.seen.neck"), 1.0);
   EXPECT_GT(value(score, "parts.right"), 0.8);
+  EXPECT_DOUBLE_EQ(value(score, "part.right_of_8.neck"), 1.0);
   EXPECT_DOUBLE_EQ(value(score, "joints.at_10cm"), 1.0);
   EXPECT_LT(value(score, "joints.error_m"), 0.06);
   EXPECT_THAT(score.joint_precision.averages(),
@@ -152,6 +153,7 @@ TEST(FrameScorer, CountsMissedAndSurplusPeople) {
   const FrameScore missed = scorer(blind, false).score(frame, false);
   EXPECT_DOUBLE_EQ(value(missed, "people.found"), 0.5);
   EXPECT_DOUBLE_EQ(value(missed, "part.seen.neck"), 0.5);
+  EXPECT_DOUBLE_EQ(value(missed, "part.right_of_8.neck"), 1.0);  // of whoever is found
   EXPECT_DOUBLE_EQ(value(missed, "joints.at_10cm"), 0.5);
   EXPECT_THAT(missed.joint_precision.averages(), Each(Pair(_, 0.5)));
   EXPECT_THAT(missed.what_went_wrong, HasSubstr("1 of 2 people missed"));

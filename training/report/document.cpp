@@ -125,6 +125,14 @@ void Document::matrix(const MatrixPlot& matrix) {
          blocks_);
 }
 
+void Document::bars(const BarPlot& plot) {
+  for (const auto& [name, shares] : plot.series) {
+    if (shares.size() == plot.names.size()) continue;
+    throw Error(fmt::format("document: {}: expected {} shares of {}", plot.caption, plot.names.size(), name));
+  }
+  append({{"kind", "bars"}, {"caption", plot.caption}, {"names", plot.names}, {"series", plot.series}}, blocks_);
+}
+
 std::string Document::html() const {
   std::string page = empty_page();
   const std::string report = fmt::format(R"(>{{"title":{},"blocks":[{}]}}</script>)", in_script(title_), blocks_);

@@ -32,6 +32,13 @@ struct MatrixPlot {
   std::vector<std::vector<double>> shares;  ///< [row][column], 0 to 1
 };
 
+/// Bars of shares: for each name one of every series.
+struct BarPlot {
+  std::string caption;
+  std::vector<std::string> names;
+  std::vector<std::pair<std::string, std::vector<double>>> series;  ///< name, and 0 to 1 for each of `names`, or NaN
+};
+
 /// A report that is composed once and written as one web page, which holds its pictures, its style and the scripts that
 /// draw its plots (web/report): it opens offline. All text is plain UTF-8 and is shown as it is.
 class Document {
@@ -54,6 +61,9 @@ class Document {
   /// Adds a matrix, coloured by its shares, with percents in the cells of half a percent and more. Throws Error unless
   /// there are as many rows and columns as names.
   void matrix(const MatrixPlot& matrix);
+
+  /// Adds bars with their percents. Throws Error unless each series has as many shares as there are names.
+  void bars(const BarPlot& plot);
 
   std::string html() const;
 

@@ -82,6 +82,11 @@ TEST(Document, RefusesInvalidTablesHeadingsAndPictures) {
         document.matrix({"m", {"a", "b"}, {{1.0}, {0.0}}});
       },
       ThrowsMessage<Error>(HasSubstr("m: expected 2 rows of as many shares")));
+  EXPECT_THAT(
+      [&] {
+        document.bars({"m", {"a", "b"}, {{"s", {1.0}}}});
+      },
+      ThrowsMessage<Error>(HasSubstr("m: expected 2 shares of s")));
 }
 
 TEST(Document, IsWrittenIntoItsFolder) {

@@ -24,13 +24,21 @@ interface Matrix {
   shares: number[][];
 }
 
+interface Bars {
+  kind: 'bars';
+  caption: string;
+  names: string[];
+  series: [string, (number | null)[]][];
+}
+
 type Block =
   | { kind: 'heading'; level: number; text: string }
   | { kind: 'paragraph' | 'preformatted'; text: string }
   | { kind: 'table'; rows: string[][] }
   | { kind: 'picture'; png: string; caption: string }
   | Plot
-  | Matrix;
+  | Matrix
+  | Bars;
 
 function element<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, text = '', ...children: Node[]) {
   const made = document.createElement(tag);
@@ -74,6 +82,23 @@ function matrix({ caption, names, shares }: Matrix): HTMLElement {
   });
   const made = element('table', '', element('thead', '', head), element('tbody', '', ...lines));
   made.className = 'matrix';
+  return element('figure', '', wide(made), element('figcaption', caption));
+}
+
+function bars({ caption, names, series }: Bars): HTMLElement {
+  const bar = (text: string, i: number, share: number) => {
+    const made = element('div', '', element('i'), element('span', text));
+    made.style.setProperty('--bar', `var(--line-${i + 2})`);
+    made.style.setProperty('--share', share.toFixed(3));
+    return made;
+  };
+  const legend = element('tr', '', element('th'), element('th', '', ...series.map(([name], i) => bar(name, i, 0.03))));
+  const lines = names.map((name, n) => {
+    const shown = series.map(([, shares], i) => bar(shares[n] === null ? '–' : `${(100 * shares[n]).toFixed(0)} %`, i, shares[n] ?? 0));
+    return element('tr', '', element('th', name), element('td', '', ...shown));
+  });
+  const made = element('table', '', element('thead', '', legend), element('tbody', '', ...lines));
+  made.className = 'bars';
   return element('figure', '', wide(made), element('figcaption', caption));
 }
 
@@ -142,6 +167,8 @@ function made(block: Block): HTMLElement {
       return table(block.rows);
     case 'matrix':
       return matrix(block);
+    case 'bars':
+      return bars(block);
     case 'plot':
       return plot(block);
     case 'picture': {

@@ -56,6 +56,7 @@ test('every kind of block is shown, and text stays text', async () => {
     { kind: 'table', rows: [['part', 'share'], ['hand', '81.20 %'], ['foot', '']] },
     { kind: 'plot', caption: 'Curve', x: 'frames', y: 'share', log_x: true, x_range: null, y_range: [0, 1],
       series: [line, { name: 'b', points: [[1000, 1], [1, 0]] }] },
+    { kind: 'bars', caption: 'By part', names: ['hand', 'foot'], series: [['of 4', [0.5, 0.25]], ['of 8', [1, null]]] },
     { kind: 'matrix', caption: 'Confusion', names: ['hand', 'foot'], shares: [[0.9, 0.1], [0, 1]] },
   ];
   const report = JSON.stringify({ title: 'a & b', blocks }).replaceAll('<', '\\u003c');
@@ -69,6 +70,10 @@ test('every kind of block is shown, and text stays text', async () => {
     assert.deepEqual(await texts(page, 'pre'), ['one\n  two']);
     assert.deepEqual(await texts(page, 'main > .wide .number'), ['share', '81.20 %', '']);
     assert.deepEqual(await texts(page, '.matrix td'), ['90', '10', '', '100']);
+    assert.deepEqual(await texts(page, '.bars th span'), ['of 4', 'of 8']);
+    assert.deepEqual(await texts(page, '.bars td span'), ['50 %', '100 %', '25 %', '–']);
+    const lengths = await page.locator('.bars td i').evaluateAll((all) => all.map((bar) => bar.getBoundingClientRect().width));
+    assert.ok(Math.abs(lengths[0] - lengths[1] / 2) < 1 && Math.abs(lengths[2] - lengths[1] / 4) < 1 && lengths[3] <= 1);
     assert.equal(await page.locator('figure canvas').evaluate(isDrawn), true);
     assert.deepEqual(await texts(page, '.u-series th'), ['frames', 'a <b>', 'b']);
     assert.deepEqual(await texts(page, 'details td'), ['1', '0.5', '0', '10', '', '', '100', '0.25', '', '1000', '', '1']);
