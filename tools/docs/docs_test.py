@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bars_by_part  # noqa: E402
 import check_links  # noqa: E402
 import python_reference  # noqa: E402
 from stage import BrokenLinks, Stage  # noqa: E402
@@ -60,6 +61,24 @@ class StagedPages(Folder):
     def test_blocks_of_commands_get_their_language(self):
         site = self.stage({"docs/a.md": "```\nvesalius info\n```\n\n```\nframe -> people\n```\n\n```bash camera\nls\n```\n"})
         self.assertEqual(site("a.md"), "```bash\nvesalius info\n```\n\n```\nframe -> people\n```\n\n```bash camera\nls\n```\n")
+
+
+class BarsByPart(Folder):
+    HEADER = "set,figure,value\n"
+
+    def test_bars_are_as_long_as_the_shares_of_their_set(self):
+        self.write({"a.csv": self.HEADER + "".join(f"{name},part.right_of_{fewest}.neck,{share}\n" for name, fewest, share in
+                                                   [("clear", 4, 0.5), ("clear", 8, 0.75), ("other", 4, 0.1), ("other", 8, 0.1)])})
+        bars_by_part.draw(self.folder / "a.svg", "clear", {"network": self.folder / "a.csv"})
+        picture = (self.folder / "a.svg").read_text()
+        for word in ['width="120.0"', 'width="180.0"', ">50<", ">75<", ">neck<", ">network<"]:
+            self.assertEqual(picture.count(word), 1, word)
+
+    def test_without_such_a_set_nothing_is_drawn(self):
+        self.write({"a.csv": self.HEADER + "clear,people.found,0.5\n"})
+        with self.assertRaisesRegex(SystemExit, "no part.right_of_"):
+            bars_by_part.draw(self.folder / "a.svg", "clear", {"network": self.folder / "a.csv"})
+        self.assertFalse((self.folder / "a.svg").exists())
 
 
 class BuiltLinks(Folder):
