@@ -7,15 +7,7 @@ set -euo pipefail
 program="$(realpath "$1")"
 source="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
-skip() {
-  echo "SKIPPED: $*"
-  exit 77
-}
-fail() {
-  echo "container.sh: $*" >&2
-  exit 1
-}
-step() { printf -- '--- %s (%d:%02d)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
+. "$source/tests/packages/say.sh"
 
 [ "$(id -u)" = 0 ] || skip "debootstrap needs root"
 for tool in buildah debootstrap python3; do

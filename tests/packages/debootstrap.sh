@@ -7,15 +7,7 @@ packages="$(realpath "$1")"
 program="$(realpath "$2")"
 source="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
-skip() {
-  echo "SKIPPED: $*"
-  exit 77
-}
-fail() {
-  echo "debootstrap.sh: $*" >&2
-  exit 1
-}
-step() { printf -- '--- %s (%d:%02d)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
+. "$source/tests/packages/say.sh"
 
 [ "$(id -u)" = 0 ] || skip "debootstrap needs root"
 for tool in debootstrap lintian unshare ip python3; do

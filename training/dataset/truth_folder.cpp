@@ -13,6 +13,7 @@
 
 #include "dataset/truth_csv.h"
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
@@ -220,12 +221,7 @@ std::vector<std::string> sets_in(const std::string& folder) {
 
 Trajectory Trajectory::parse(std::string_view text, const std::string& name) {
   Trajectory trajectory;
-  for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == line.npos || line[begin] == '#') continue;
+  each_line(text, " \t\r", [&](std::string_view line, int number) {
     const auto v = numbers(line);
     if (!v) throw Error(fmt::format("{}:{}: expected \"timestamp tx ty tz qx qy qz qw\"", name, number));
     const double time_s = (*v)[0];
@@ -237,7 +233,7 @@ Trajectory Trajectory::parse(std::string_view text, const std::string& name) {
       throw Error(fmt::format("{}:{}: a time that does not come after the one before", name, number));
     }
     trajectory.poses_.push_back({time_s, rotation.normalized()});
-  }
+  });
   if (trajectory.poses_.empty()) throw Error(name + ": no pose, expected \"timestamp tx ty tz qx qy qz qw\"");
   return trajectory;
 }

@@ -38,6 +38,18 @@ inline std::string_view trimmed(std::string_view text, std::string_view of = " \
   return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(of) - begin + 1);
 }
 
+/// Calls use(line, number) for each line that is neither empty nor a comment (#): without the characters of `of` at
+/// its ends, numbers counting from 1.
+template <class Use>
+void each_line(std::string_view text, std::string_view of, const Use& use) {
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trimmed(text.substr(0, end), of);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.empty() && line.front() != '#') use(line, number);
+  }
+}
+
 /// Returns a text without its byte order mark. Of UTF-16, which PowerShell's ">" writes, the low bytes are kept, since
 /// names and numbers have no others.
 inline std::string without_byte_order(std::string_view text) {

@@ -33,24 +33,17 @@ std::optional<std::array<double, 4>> numbers_of(std::string_view line) {
 }  // namespace
 
 std::vector<TimedAcceleration> parse_accelerations(std::string_view text, const std::string& name) {
-  const std::string plain = without_byte_order(text);
-  std::string_view rest = plain;
   std::vector<TimedAcceleration> measured;
   bool is_first = true;
-  for (int number = 1; !rest.empty(); ++number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = trimmed(rest.substr(0, end), kBetween);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (line.empty() || line.front() == '#') continue;
-    const auto numbers = numbers_of(line);
-    if (numbers) {
-      const auto& [time_s, x, y, z] = *numbers;
-      measured.push_back({clock_seconds(time_s), {x, y, z}});
+  each_line(without_byte_order(text), kBetween, [&](std::string_view line, int number) {
+    if (const auto numbers = numbers_of(line)) {
+      const auto& values = *numbers;
+      measured.push_back({clock_seconds(values[0]), {values[1], values[2], values[3]}});
     } else if (!is_first) {
       throw Error(fmt::format("{}:{}: expected \"time_s,x,y,z\", four numbers", name, number));
     }
     is_first = false;
-  }
+  });
   std::ranges::stable_sort(measured, {}, &TimedAcceleration::time_s);
   return measured;
 }

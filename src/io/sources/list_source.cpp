@@ -352,15 +352,9 @@ void add_up(FrameList& list, const std::vector<std::string>& folders) {
 std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
 
 std::vector<TumEntry> parse_tum_list(std::string_view bytes, const std::string& name) {
-  const std::string plain = without_byte_order(bytes);
-  std::string_view text = plain;
   std::vector<TumEntry> entries;
-  for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end), kBetweenWords);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!line.empty() && line.front() != '#') entries.push_back(parse_line(line, name, number));
-  }
+  each_line(without_byte_order(bytes), kBetweenWords,
+            [&](std::string_view line, int number) { entries.push_back(parse_line(line, name, number)); });
   std::stable_sort(entries.begin(), entries.end(),
                    [](const TumEntry& a, const TumEntry& b) { return a.time_s < b.time_s; });
   return entries;
