@@ -31,6 +31,7 @@ inline std::string counted(std::int64_t count, std::string_view noun, std::strin
 }
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+inline bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 /// Returns a text without the characters of `of` at its ends.
 inline std::string_view trimmed(std::string_view text, std::string_view of = " \t\r\n") {

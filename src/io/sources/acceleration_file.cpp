@@ -17,17 +17,36 @@ namespace {
 
 constexpr std::string_view kBetween = " \t\r,";
 
+/// Returns the four words of a line; nothing of other lines.
+std::optional<std::array<std::string_view, 4>> words_of(std::string_view line) {
+  std::array<std::string_view, 4> words;
+  for (std::string_view& word : words) {
+    word = line.substr(0, line.find_first_of(kBetween));
+    line = trimmed(line.substr(word.size()), kBetween);
+    if (word.empty()) return std::nullopt;
+  }
+  return line.empty() ? std::optional(words) : std::nullopt;
+}
+
 /// Returns the four numbers of a line; nothing of other lines.
 std::optional<std::array<double, 4>> numbers_of(std::string_view line) {
+  const auto words = words_of(line);
+  if (!words) return std::nullopt;
   std::array<double, 4> numbers{};
-  for (double& number : numbers) {
-    const std::size_t end = std::min(line.find_first_of(kBetween), line.size());
-    const auto value = number_of(line.substr(0, end));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto value = number_of((*words)[i]);
     if (!value || !std::isfinite(*value)) return std::nullopt;
-    number = *value;
-    line = trimmed(line.substr(end), kBetween);
+    numbers[i] = *value;
   }
-  return line.empty() ? std::optional(numbers) : std::nullopt;
+  return numbers;
+}
+
+bool is_name(std::string_view word) { return is_letter(word.front()); }
+
+/// Returns whether a line has four names: "time_s,x,y,z".
+bool has_names(std::string_view line) {
+  const auto words = words_of(line);
+  return words && std::ranges::all_of(*words, is_name);
 }
 
 }  // namespace
@@ -39,7 +58,7 @@ std::vector<TimedAcceleration> parse_accelerations(std::string_view text, const 
     if (const auto numbers = numbers_of(line)) {
       const auto& values = *numbers;
       measured.push_back({clock_seconds(values[0]), {values[1], values[2], values[3]}});
-    } else if (!is_first) {
+    } else if (!is_first || !has_names(line)) {
       throw Error(fmt::format("{}:{}: expected \"time_s,x,y,z\", four numbers", name, number));
     }
     is_first = false;

@@ -14,12 +14,9 @@ struct TimedAcceleration {
   Eigen::Vector3d m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// The file beside pictures that has them: a line of names and then lines "time_s,x,y,z".
-inline constexpr const char* kAccelerationFile = "imu.csv";
-
-/// Reads such a file. Times are those of clock_seconds. Empty lines and those that begin with # are skipped; blanks or
-/// tabs may stand for commas. The measurements are sorted by time. Throws Error naming `name` and the line if a line
-/// has not four numbers.
+/// Reads a kAccelerationFile: lines "time_s,x,y,z", before which a line of four names may stand. Times are those of
+/// clock_seconds. Empty lines and those that begin with # are skipped; blanks or tabs may stand for commas. The
+/// measurements are sorted by time. Throws Error naming `name` and the line if a line has not four numbers.
 std::vector<TimedAcceleration> parse_accelerations(std::string_view text, const std::string& name);
 
 /// Returns the text of such a file.

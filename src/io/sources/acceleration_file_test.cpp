@@ -45,6 +45,14 @@ TEST(AccelerationFile, NamesTheLineThatIsNone) {
   }
 }
 
+TEST(AccelerationFile, NamesMayComeFirstAndNothingElse) {
+  EXPECT_THAT(parse_accelerations("timestamp ax ay az\n", "imu.csv"), IsEmpty());
+  for (const std::string first : {"time_s,x,y", "0.1,x,y,z", "1,2,nan,3", "\x01\x02\x03"}) {
+    EXPECT_THAT(error_of([&] { parse_accelerations(first + "\n0,0,-9.8,0\n", "imu.csv"); }), HasSubstr("imu.csv:1: "))
+        << first;
+  }
+}
+
 TEST(AccelerationFile, TellsFramesWhereUpIs) {
   const TemporaryFolder folder;
   put(folder / "meta.json", R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31, "cy": 23, "rate_hz": 1})");
@@ -54,6 +62,8 @@ TEST(AccelerationFile, TellsFramesWhereUpIs) {
   put(folder / "imu.csv", "time_s,x,y,z\n0.7,0,-9.8,0.2\n0.9,0,-9.8,-0.2\n2.8,0,-1,0\n");
   const auto source = open_source(folder.path());
   EXPECT_THAT(source->notes(), IsEmpty());
+  EXPECT_THAT(source->contents(), testing::Contains(testing::AllOf(testing::Field(&SourceItem::name, "imu.csv"),
+                                                                   testing::Field(&SourceItem::use, "up"))));
   EXPECT_FALSE(source->next()->up);
   EXPECT_TRUE(source->next()->up->isApprox(-Eigen::Vector3f::UnitY(), 1e-6F));
   EXPECT_FALSE(source->next()->up);

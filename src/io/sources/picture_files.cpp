@@ -26,8 +26,6 @@ std::string_view number_at(std::string_view text, std::size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-
 Role role_of_word(std::string_view word) {
   if (word.starts_with("depth")) return Role::depth;
   for (const std::string_view colour : {"rgb", "color", "colour", "image", "img"}) {
@@ -64,7 +62,8 @@ std::string kind_of(const fs::path& path, const fs::path& root) {
   const Role role = parse_picture_name(path.stem().string()).role;
   const std::string word = role == Role::depth ? "*depth*" : role == Role::colour ? "*color*" : "*";
   const std::string extension = lower_extension(path);
-  const bool text = extension == ".json" || extension == ".txt" || extension.starts_with(".y");
+  const bool text = extension == ".json" || extension == ".txt" || extension.starts_with(".y") ||
+                    path.filename() == kAccelerationFile;
   return (folder / (text ? path.filename().string() : word + extension)).string();
 }
 

@@ -34,6 +34,9 @@ PictureName parse_picture_name(const std::string& stem);
 std::vector<SourceItem> items_of(const std::string& folder, const std::vector<std::string>& depths = {},
                                  const std::vector<std::string>& colours = {});
 
+/// The file beside pictures that has accelerations (acceleration_file.h).
+inline constexpr const char* kAccelerationFile = "imu.csv";
+
 /// Returns seconds of a time that counts milliseconds, microseconds or nanoseconds since 1970, as its size tells; other
 /// times as they are, in seconds.
 double clock_seconds(double time);

@@ -16,6 +16,7 @@
 #include "io/sources/acceleration_file.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/fact_tree.h"
+#include "io/sources/picture_files.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
