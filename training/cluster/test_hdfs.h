@@ -129,7 +129,7 @@ class TestHdfs {
       next_cuts.pop_front();
     }
     const bool hangs_up = query.at("op") == "RENAME" && std::exchange(loses_rename_answer, false);
-    const HdfsReply reply = reply_to(parser.get().method_string().to_string(), path, query, parser.get().body());
+    const HdfsReply reply = reply_to(std::string(parser.get().method_string()), path, query, parser.get().body());
     if (!hangs_up) send(socket, reply, cut);
   }
 
