@@ -13,3 +13,12 @@ freenect_frame_mode freenect_find_depth_mode(freenect_resolution resolution, fre
   mode.is_valid = 1;
   return mode;
 }
+
+// It lacks these, which the program calls where it lists cameras; Ubuntu's linker wants them at the start.
+int freenect_list_device_attributes(freenect_context* context, struct freenect_device_attributes** list) {
+  (void)context;
+  *list = 0;
+  return 0;
+}
+
+void freenect_free_device_attributes(struct freenect_device_attributes* list) { (void)list; }
