@@ -65,7 +65,7 @@ class Retrain : public testing::Test {
     replace_word(command, "0.01", "0.005");
     if (command.starts_with("train ")) command += " --trees 3 --hard-trees 1 --depth 10 --held-out-share 0.1";
     if (command.starts_with("train --recipe") && command.find("--scale") == std::string::npos)
-      command += " --scale 0.0075";
+      command += " --scale 0.012";
     return command;
   }
 
