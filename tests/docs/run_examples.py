@@ -60,6 +60,8 @@ class Wrapper:
         """Links a stand-in to where the example has a file or folder of the reader's."""
         path = Path(name.split(":")[1] if name.startswith("tum:") else name)
         if not path.exists() and not path.is_symlink():
+            if path.parent.resolve().is_relative_to(self.source / "data"):  # data/ is a link to it
+                sys.exit(f"{name}: is not among the project's data")
             path.parent.mkdir(parents=True, exist_ok=True)
             path.absolute().symlink_to(self.stand_ins / stand_in)
 
