@@ -32,8 +32,8 @@ std::vector<std::string> satellite_names() {
 std::string absent_command(const std::string& command) {
   const std::vector<std::string> workshop{"train", "synth", "evaluate", "compare", "assets"};
   const bool here = std::ranges::any_of(satellites(), [&](const Satellite& s) { return s.name == command; });
-  std::string without;
   if (here) return "";
+  std::string without;
   if (std::ranges::find(workshop, command) != workshop.end()) without = "training (VESALIUS_TRAINING=OFF)";
   if (command == "view") without = "the viewer (VESALIUS_VIEW=OFF, or no Boost)";
   if (command == "ros2") without = "Cyclone DDS";

@@ -86,6 +86,7 @@ class FolderWriter : public FrameWriter {
   }
 
   const fs::path& root() const { return root_; }
+  std::optional<float> rate_hz() const { return rate_hz_; }
 
  private:
   /// Frames of one time, as of a clock that stood or was set back, have one name: the second gets "_2".
@@ -106,23 +107,21 @@ class FolderWriter : public FrameWriter {
 
 class PngWriter final : public FolderWriter {
  public:
-  PngWriter(const fs::path& root, std::optional<float> rate_hz)
-      : FolderWriter(root, 1000.F, rate_hz), rate_hz_(rate_hz) {}
+  PngWriter(const fs::path& root, std::optional<float> rate_hz) : FolderWriter(root, 1000.F, rate_hz) {}
 
  private:
   // Of several clips in a folder each begins at 0, and names or places count on.
   std::optional<double> time_when_read(const Frame& frame, const std::string& name) override {
     const int place = count_++;
-    if (!rate_hz_) return frame.time_s;
+    if (!rate_hz()) return frame.time_s;
     return (std::ranges::all_of(name, is_digit) ? number_of(std::string_view(name)) : std::nullopt).value_or(place) /
-           *rate_hz_;
+           *rate_hz();
   }
 
   void write_pictures(const Frame& frame, const std::string& name) override {
     write_pngs(frame.depth, frame.colour, name);
   }
 
-  std::optional<float> rate_hz_;
   int count_ = 0;
 };
 
