@@ -38,7 +38,7 @@ std::pair<std::vector<DueFit>, std::vector<DueFit>> find_fits(const std::string&
   while (std::optional<Frame> next = source->next()) {
     const auto frame = std::make_shared<const Frame>(*std::move(next));
     Detection found = detector.detect(*frame, [&](const Frame& asked) { return tracker.expect(asked); });
-    for (const TrackedPerson& tracked : tracker.update(*frame, std::move(found.people), found.planes).people) {
+    for (const TrackedPerson& tracked : tracker.update(*frame, std::move(found)).people) {
       if (tracked.person.mask.empty()) continue;
       const double time_s = tracked.seen_s;
       BodyHistory& history = histories[tracked.id];

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "vesalius/appearance.h"
@@ -47,6 +48,11 @@ class Detector {
   /// caller's thread, and may wait until the people of the frame before are known. What it throws is passed on.
   Detection detect(const Frame& frame, const AskPrior& prior, Trace* trace = nullptr,
                    StageTimes* times = nullptr) const;
+
+  /// As above, and looks for people in `region` alone, widened to the blocks that labellers take, if there is one and
+  /// no trace is asked for. Throws Error for one that does not lie within the frame.
+  Detection detect(const Frame& frame, const std::optional<PictureRegion>& region, const AskPrior& prior,
+                   Trace* trace = nullptr, StageTimes* times = nullptr) const;
 
   /// Returns the labels of the first pass and runs no other stage. With `person`, also returns the second pass's labels
   /// of the pixels where it is non-zero; those of one person have the same number. Throws Error for a frame whose

@@ -118,7 +118,10 @@ struct TrackOptions {
   int remembered = 32;     ///< most lost people who are known again
   float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back
   float odds = 40.F;       ///< most by which having been found before multiplies the odds of being found again
-  bool smooth = true;      ///< whether TrackedPerson::smoothed is filled
+  /// Time after which the whole picture is looked at again; between, only where people are, as long as nothing else
+  /// moves.
+  float whole_s = 0.17F;
+  bool smooth = true;  ///< whether TrackedPerson::smoothed is filled
   JointSmoothing smoothing;
 };
 void visit_options(const std::string& prefix, TrackOptions& options, OptionVisitor& visitor);

@@ -98,8 +98,9 @@ struct Plane {
 
 /// The people of a frame and the large flat surfaces about them.
 struct Detection {
-  std::vector<Person> people;  ///< the most certain first
-  std::vector<Plane> planes;   ///< floor, walls and others, largest first (find_planes)
+  std::vector<Person> people = {};  ///< the most certain first
+  std::vector<Plane> planes = {};   ///< floor, walls and others, largest first (find_planes)
+  bool whole = true;                ///< whether all of the picture was looked at, not a PictureRegion alone
 };
 
 /// Returns a map of the people of the frame's size: index in `people`, kBackground elsewhere. People whose masks are

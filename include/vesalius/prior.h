@@ -38,6 +38,13 @@ struct Prior {
   std::vector<KnownPerson> people;
 };
 
+/// The part of a picture in which people are looked for, where all else is as it was in the last frame that was looked
+/// at as a whole.
+struct PictureRegion {
+  Box box;                         ///< within the picture, not empty
+  std::vector<Plane> planes = {};  ///< of that frame, which are not searched for again
+};
+
 /// Least overlap of a candidate with the mask of a known person that lets it profit of that person's odds.
 inline constexpr float kKnownOverlap = 0.3F;
 
@@ -46,6 +53,12 @@ float shared_pixels(const Mask& a, const Mask& b);
 
 /// Throws Error if a mask and the frame differ in size, or odds or sizes are not above 0 and finite.
 void check(const Prior& prior, const Frame& frame);
+
+/// Throws Error if the box is empty or does not lie within the frame.
+void check(const PictureRegion& region, const Frame& frame);
+
+/// Returns the prior of the picture inside a box.
+Prior cropped(Prior prior, const Box& box);
 
 /// Returns the prior on every `step`-th pixel of every `step`-th row.
 Prior every_nth(const Prior& prior, int step);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "vesalius/frame.h"
 #include "vesalius/people_options.h"
 #include "vesalius/person.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius {
 
@@ -43,9 +45,17 @@ class PeopleTracker {
   /// Returns what the frames before tell about the people of this one, which comes next.
   Prior expect(const Frame& frame) const;
 
-  /// Takes what was found in the next frame: its people, and its planes. People whose masks have another size than the
-  /// frame have no mask. Throws Error for people of another body.
-  TrackedFrame update(const Frame& frame, std::vector<Person> people, const std::vector<Plane>& planes = {});
+  /// Returns where all people of this frame, which comes next, will be: a third larger than about those of the frame
+  /// before, where they have gone since. Nothing if the whole picture is to be looked at: where nobody is followed, or
+  /// somebody was not found, every TrackOptions::whole_s, and where anything else has changed since then, as it does
+  /// with a camera that moves. So whoever comes in is found that much later at most.
+  std::optional<PictureRegion> region(const Frame& frame) const;
+  /// Returns whether `region` may return one.
+  bool knows_regions() const;
+
+  /// Takes what was found in the next frame. People whose masks have another size than the frame have no mask. Throws
+  /// Error for people of another body.
+  TrackedFrame update(const Frame& frame, Detection found);
 
  private:
   struct State;
@@ -56,7 +66,18 @@ class PeopleTracker {
 /// outside its range.
 PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options);
 
-/// Finds the people of the frame that comes next, and follows them.
+/// What a caller of `follow` asks for, and is told beside the people.
+struct FollowReport {
+  Trace* trace = nullptr;           ///< filled if there is one; then the whole picture is looked at
+  std::function<void()> wait = {};  ///< called before the tracker is asked, until all frames before this one are done
+  StageTimes times = {};
+  double track_ms = 0.0;           ///< time to follow people, beside the detector's stages
+  std::vector<Plane> planes = {};  ///< Detection::planes
+};
+
+/// Finds the people of the frame that comes next, and follows them. Looks at a part of the picture where the tracker
+/// knows one (PeopleTracker::region), and at all of it if somebody reaches out of that.
 TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame);
+TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame, FollowReport& report);
 
 }  // namespace vesalius

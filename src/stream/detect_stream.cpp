@@ -81,14 +81,11 @@ class Finder {
   void detect(FoundFrame& in) { in.people = seen_people(detector_.detect(*in.frame, nullptr, &in.times)); }
 
   void follow(FoundFrame& in, long number) {
-    const AskPrior ask = [&](const Frame& frame) {
-      turns_.wait(number);
-      Prior prior;
-      in.track_ms += elapsed_ms([&] { prior = tracker_->expect(frame); });
-      return prior;
-    };
-    Detection found = detector_.detect(*in.frame, ask, nullptr, &in.times);
-    in.track_ms += elapsed_ms([&] { in.people = tracker_->update(*in.frame, std::move(found.people), found.planes); });
+    FollowReport report;
+    report.wait = [&] { turns_.wait(number); };
+    in.people = vesalius::follow(detector_, *tracker_, *in.frame, report);
+    in.times = report.times;
+    in.track_ms = report.track_ms;
   }
 
   const Detector& detector_;

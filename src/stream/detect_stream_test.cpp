@@ -161,7 +161,7 @@ std::string told(const FoundFrame& found) {
 
 std::vector<std::string> follow(test::Crossing& source, int fails_at = -1) {
   source.begin_again();
-  const Detector detector(std::make_shared<test::Knowing>(source, fails_at));
+  const Detector detector(std::make_shared<test::Knowing>(source.frames(), fails_at));
   PeopleTracker tracker(detector.body(), {}, detector.appearance());
   std::vector<std::string> lines;
   stream_frames(source, detector, tracker, {}, [&](const FoundFrame& found) {
@@ -200,12 +200,76 @@ TEST(FollowedFramesThreads, EndWheneverTheTakerHasEnough) {
   const ThreadLimit limit(2);
   for (int enough = 1; enough < 6; ++enough) {
     source.begin_again();
-    const Detector detector(std::make_shared<test::Knowing>(source, 2));
+    const Detector detector(std::make_shared<test::Knowing>(source.frames(), 2));
     PeopleTracker tracker(detector.body(), {}, detector.appearance());
     int taken = 0;
     stream_frames(source, detector, tracker, {}, [&](const FoundFrame&) { return ++taken < enough; });
     EXPECT_EQ(taken, enough);
   }
+}
+
+/// Somebody who stands before a wall, and raises an arm in the last frame. Somebody else is there from the frame
+/// `comes` on.
+std::vector<LabelledFrame> standing(int frames, int comes = -1) {
+  std::vector<LabelledFrame> all;
+  for (int i = 0; i < frames; ++i) {
+    CapsuleScene scene;
+    scene.people.resize(comes >= 0 && i >= comes ? 2 : 1);
+    scene.people[0].feet = {-0.6F + 0.01F * static_cast<float>(i), 0.9F, 2.8F};
+    scene.people[0].pose.l_arm.raise = i + 1 == frames ? 1.5F : 0.1F;
+    if (scene.people.size() > 1) scene.people[1].feet = {1.F, 0.9F, 2.8F};
+    scene.floor_y_m = 0.9F;
+    scene.wall_z_m = 4.F;
+    LabelledFrame truth = render(scene, {320, 240, 262.5F, 262.5F, 159.5F, 119.5F}, paper_body());
+    truth.frame.time_s = i / kUsualRate;
+    all.push_back(std::move(truth));
+  }
+  return all;
+}
+
+/// Follows the people in frames and returns what was told of each, and how many pictures were looked at.
+struct Followed {
+  Followed(const std::vector<LabelledFrame>& frames, const TrackOptions& options) {
+    const auto labeller = std::make_shared<test::Knowing>(frames);
+    const Detector detector(labeller);
+    PeopleTracker tracker(detector.body(), options, detector.appearance());
+    for (const LabelledFrame& truth : frames) {
+      told.push_back(follow(detector, tracker, truth.frame).people);
+      wholes.push_back(labeller->wholes);
+      parts.push_back(labeller->parts);
+    }
+  }
+  std::vector<std::vector<TrackedPerson>> told;
+  std::vector<int> wholes, parts;  ///< up to each frame
+};
+
+TEST(FollowedFrames, AreLookedAtInPartsWithTheSamePeople) {
+  const std::vector<LabelledFrame> frames = standing(20);
+  TrackOptions always_whole;
+  always_whole.whole_s = 0.F;
+  const Followed parts(frames, {}), whole(frames, always_whole);
+  EXPECT_EQ(whole.wholes.back(), 20);
+  EXPECT_EQ(whole.parts.back(), 0);
+  // Every sixth of 30 frames a second, and the last one, whose arm reaches out of the part.
+  EXPECT_EQ(parts.wholes.back(), 5);
+  EXPECT_EQ(parts.parts.back(), 16);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_EQ(parts.told[i].size(), 1U);
+    ASSERT_EQ(whole.told[i].size(), 1U);
+    const TrackedPerson &a = parts.told[i][0], &b = whole.told[i][0];
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_LT((a.position - b.position).norm(), 0.02F);
+    EXPECT_GT(shared_pixels(a.person.mask, b.person.mask), 0.95F) << "frame " << i;
+  }
+  EXPECT_EQ(parts.told[19][0].person.mask, whole.told[19][0].person.mask) << "with the hand";
+}
+
+TEST(FollowedFrames, ShowWhoeverComesInAtOnce) {
+  const std::vector<LabelledFrame> frames = standing(9, 7);
+  const Followed followed(frames, {});
+  EXPECT_GT(followed.parts[6], followed.parts[0]);
+  EXPECT_EQ(followed.told[6].size(), 1U);
+  EXPECT_EQ(followed.told[7].size(), 2U);
 }
 
 /// Empty frames at these times.
@@ -241,7 +305,7 @@ TEST(RealTimeThreads, NeverWaitsForAClockThatJumps) {
 // Labels: threads
 TEST(FollowedFramesThreads, InRealTimeHaveIdsToo) {
   test::Crossing source;
-  const Detector detector(std::make_shared<test::Knowing>(source));
+  const Detector detector(std::make_shared<test::Knowing>(source.frames()));
   PeopleTracker tracker(detector.body(), {}, detector.appearance());
   StreamOptions options;
   options.realtime = true;

@@ -34,7 +34,7 @@ class OtherCameras : public testing::Test {
   OtherCamera camera(double clock_s) { return {std::make_unique<Borrowed>(crossing_, clock_s), detector_, {}}; }
 
   test::Crossing crossing_{true};
-  const Detector detector_{std::make_shared<test::Knowing>(crossing_)};
+  const Detector detector_{std::make_shared<test::Knowing>(crossing_.frames())};
 };
 
 constexpr double kStep_s = 1.0 / kUsualRate;
@@ -82,7 +82,7 @@ TEST_F(OtherCameras, GoBack) {
 
 TEST(MergedCameras, ShowPeopleOfBothUnderOneId) {
   test::Crossing first(true), second(true);
-  const Detector detector(std::make_shared<test::Knowing>(first));
+  const Detector detector(std::make_shared<test::Knowing>(first.frames()));
   std::vector<OtherCamera> others;
   others.emplace_back(std::make_unique<Borrowed>(second, 0.0), detector, PeopleOptions{});
   MergedCameras cameras(detector.body(), std::move(others),

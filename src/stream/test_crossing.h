@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -52,24 +53,33 @@ class Crossing : public FrameSource {
   int given_ = 0;
 };
 
-/// Knows the true labels of the frames of a source by their depth. Every third frame takes longer, and some cannot be
-/// labelled.
+/// Knows the true labels of some frames, or of parts of them, by their depth. Every third frame takes longer, and some
+/// cannot be labelled.
 class Knowing : public BlindLabeller {
  public:
-  explicit Knowing(const Crossing& source, int fails_at = -1) : source_(source), fails_at_(fails_at) {}
+  explicit Knowing(const std::vector<LabelledFrame>& frames, int fails_at = -1)
+      : frames_(frames), fails_at_(fails_at) {}
 
   void label_into(const Frame& frame, float gate, Posteriors& out) const override {
     BlindLabeller::label_into(frame, gate, out);
     const DepthImage& depth = frame.depth;
-    const auto& frames = source_.frames();
-    const auto truth = std::ranges::find_if(frames, [&](const LabelledFrame& f) { return f.frame.depth == depth; });
-    if (truth == frames.end()) throw Error("an unknown frame");
-    const auto index = static_cast<int>(truth - frames.begin());
+    // The principal point tells which part of the picture this is.
+    const Camera& whole = frames_.front().frame.camera;
+    const Box part{static_cast<int>(std::lround(whole.cx - frame.camera.cx)),
+                   static_cast<int>(std::lround(whole.cy - frame.camera.cy)), depth.width(), depth.height()};
+    const bool within =
+        part.u >= 0 && part.v >= 0 && part.u + part.width <= whole.width && part.v + part.height <= whole.height;
+    if (!within) throw Error("an unknown frame");
+    const auto truth =
+        std::ranges::find_if(frames_, [&](const LabelledFrame& f) { return crop(f.frame.depth, part) == depth; });
+    if (truth == frames_.end()) throw Error("an unknown frame");
+    const auto index = static_cast<int>(truth - frames_.begin());
     if (index == fails_at_) throw Error("cannot label this one");
     if (index % 3 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    (depth.same_size(truth->frame.depth) ? wholes : parts).fetch_add(1);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
-        const std::uint8_t label = truth->labels(u, v);
+        const std::uint8_t label = truth->labels(part.u + u, part.v + v);
         if (label == kBackground) continue;
         out.at(u, v)[out.classes - 1] = 0;
         out.at(u, v)[label] = 255;
@@ -77,8 +87,10 @@ class Knowing : public BlindLabeller {
     }
   }
 
+  mutable std::atomic<int> wholes = 0, parts = 0;  ///< frames that were labelled, and parts of frames
+
  private:
-  const Crossing& source_;
+  const std::vector<LabelledFrame>& frames_;
   int fails_at_;
 };
 

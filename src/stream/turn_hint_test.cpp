@@ -36,7 +36,7 @@ std::vector<Frame> lying(const Crossing& source, int quarters) {
 
 TEST(TurnHint, NamesTheTurnByWhichPeopleAreFound) {
   const Crossing source;
-  const Detector detector = Detector(std::make_shared<KnowsUpright>(source));
+  const Detector detector = Detector(std::make_shared<KnowsUpright>(source.frames()));
   for (const int quarters : {1, 2, 3}) {
     const std::vector<Frame> frames = lying(source, quarters);
     TurnHint hint(detector);
@@ -49,7 +49,7 @@ TEST(TurnHint, NamesTheTurnByWhichPeopleAreFound) {
 TEST(TurnHint, SaysItAmongManyFrames) {
   const Crossing source;
   const std::vector<Frame> frames = lying(source, 1);
-  TurnHint hint{Detector(std::make_shared<KnowsUpright>(source))};
+  TurnHint hint{Detector(std::make_shared<KnowsUpright>(source.frames()))};
   int said = 0;
   for (int i = 0; i < 30; ++i) said += hint.add(frames[std::size_t(i) % frames.size()], false) ? 1 : 0;
   EXPECT_EQ(said, 0);
@@ -61,7 +61,7 @@ TEST(TurnHint, IsSilentWherePeopleAreFoundOrTheCameraIsKnown) {
   const Crossing source;
   const std::vector<Frame> frames = lying(source, 1);
   for (const int known : {0, 1, 2}) {
-    TurnHint hint{Detector(std::make_shared<KnowsUpright>(source))};
+    TurnHint hint{Detector(std::make_shared<KnowsUpright>(source.frames()))};
     for (Frame frame : frames) {
       if (known == 1) frame.quarter_turns = 0;
       if (known == 2) frame.up = Eigen::Vector3f(0, -1, 0);
@@ -75,7 +75,7 @@ TEST(TurnHint, IsSilentInAnEmptyRoom) {
   const Crossing source;
   Frame frame = source.frames().front().frame;
   frame.depth = DepthImage(frame.depth.width(), frame.depth.height(), 3000);
-  TurnHint hint{Detector(std::make_shared<KnowsUpright>(source))};
+  TurnHint hint{Detector(std::make_shared<KnowsUpright>(source.frames()))};
   hint.add(frame, false);
   EXPECT_EQ(hint.finish(), std::nullopt);
 }

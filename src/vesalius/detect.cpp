@@ -68,11 +68,11 @@ namespace {
 
 using Candidate = Trace::Candidate;
 
-/// Runs sections 4 to 6 on the whole picture.
-Scene first_pass(const Method& method, const Frame& frame, StageClock& clock) {
+/// Runs sections 4 to 6 on the whole picture. Planes that are `known` are not searched for.
+Scene first_pass(const Method& method, const Frame& frame, const std::vector<Plane>* known, StageClock& clock) {
   const DetectOptions& options = method.options;
   Scene scene;
-  scene.labels = method.labeller.label_scene(frame, clock, method.memory.take());
+  scene.labels = method.labeller.label_scene(frame, clock, method.memory.take(), known);
   // Every pixel that may be a part is proposed as one. The score later separates people from the rest.
   scene.proposals = method.labeller.choose(scene.labels, frame, options.label.proposal_weight);
   clock.lap(Stage::choose);
@@ -339,11 +339,11 @@ void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, 
   if (!person.empty()) trace.inside = label_people(method, scene.labels, frame, person);
 }
 
-/// Runs the method on one frame of any size.
-Detection detect_everywhere(const Method& method, const Frame& frame, const std::function<Prior()>& ask, Trace* trace,
-                            const Mask& person, StageTimes* times) {
+/// Runs the method on one frame of any size. Planes that are `known` are not searched for.
+Detection detect_everywhere(const Method& method, const Frame& frame, const std::vector<Plane>* known_planes,
+                            const std::function<Prior()>& ask, Trace* trace, const Mask& person, StageTimes* times) {
   StageClock clock(times);
-  Scene scene = first_pass(method, frame, clock);
+  Scene scene = first_pass(method, frame, known_planes, clock);
   Prior prior = ask();
   clock.skip();  // the time that others took
   const KnownPeople known(frame, scene.labels.flat, scene.labels.smooth, method.body.part_count(), prior);
@@ -388,8 +388,55 @@ Detector::Detector(Model model, DetectOptions options, std::shared_ptr<const App
 
 namespace {
 
+/// Finds the people in an upright picture. Planes that are `known` are not searched for.
+Detection detect_upright(const Method& method, const Frame& given, const GridOptions& grid_options,
+                         const std::vector<Plane>* known, const AskPrior& ask, Trace* trace, StageTimes* times) {
+  StageClock clock(times);
+  const std::optional<DepthImage> cleared = without_blended(given.depth, method.options.blend);
+  clock.lap(Stage::grid);
+  return on_grid(
+      given, cleared ? *cleared : given.depth, grid_options, times,
+      [&](const Frame& grid, int step) {
+        const bool has_person = trace != nullptr && trace->person != nullptr;
+        const Mask person = has_person ? every_nth(*trace->person, step) : Mask{};
+        const auto ask_on_grid = [&] {
+          const Prior prior = ask(given);
+          check(prior, given);
+          return every_nth(prior, step);
+        };
+        return detect_everywhere(method, grid, known, ask_on_grid, trace, person, times);
+      },
+      [&](const GridGuide& guide, Detection& found) {
+        for (Person& person : found.people) enlarge(guide, person);
+        if (trace != nullptr) enlarge(guide, *trace);
+      });
+}
+
+/// Finds the people in a part of an upright picture.
+Detection detect_within(const Method& method, const Frame& given, const PictureRegion& region, const AskPrior& ask,
+                        StageTimes* times) {
+  GridOptions grid;
+  grid.step = grid_step(given.camera, method.options.grid);
+  const Box box = in_blocks(region.box, given.camera, grid.step);
+  const auto ask_within = [&](const Frame&) {
+    Prior prior = ask(given);
+    check(prior, given);
+    return cropped(std::move(prior), box);
+  };
+  Detection found = detect_upright(method, cropped(given, box), grid, &region.planes, ask_within, nullptr, times);
+  found.whole = false;
+  for (Person& person : found.people) {
+    person.mask = uncropped(person.mask, box, given.camera, std::uint8_t{0});
+    person.labels = uncropped(person.labels, box, given.camera, kBackground);
+    person.box.u += box.u;
+    person.box.v += box.v;
+  }
+  return found;
+}
+
 /// Finds the people in the upright frame and turns them back.
-Detection detect_turned(const Detector& detector, const Frame& given, int quarters, const AskPrior& ask, Trace* trace,
+Detection detect_turned(const Detector& detector, const Frame& given, int quarters,
+                        const std::optional<PictureRegion>& region, const AskPrior& ask, Trace* trace,
                         StageTimes* times) {
   const auto ask_turned = [&](const Frame&) {
     Prior prior = ask(given);
@@ -402,7 +449,10 @@ Detection detect_turned(const Detector& detector, const Frame& given, int quarte
     person = turned(*trace->person, quarters);
     upright.person = &person;
   }
-  Detection found = detector.detect(turned(given, quarters), ask_turned, trace != nullptr ? &upright : nullptr, times);
+  std::optional<PictureRegion> within;
+  if (region) within = turned(*region, given.camera, quarters);
+  Detection found =
+      detector.detect(turned(given, quarters), within, ask_turned, trace != nullptr ? &upright : nullptr, times);
   if (trace != nullptr) {
     upright.person = trace->person;
     *trace = turned(std::move(upright), 4 - quarters);
@@ -412,39 +462,29 @@ Detection detect_turned(const Detector& detector, const Frame& given, int quarte
 
 }  // namespace
 
-Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace, StageTimes* times) const {
+Detection Detector::detect(const Frame& given, const std::optional<PictureRegion>& region, const AskPrior& ask,
+                           Trace* trace, StageTimes* times) const {
   check(given);
+  if (region) check(*region, given);
   if (const int quarters = quarters_to_upright(given); quarters != 0) {
-    return detect_turned(*this, given, quarters, ask, trace, times);
+    return detect_turned(*this, given, quarters, region, ask, trace, times);
   }
-  StageClock clock(times);
-  const std::optional<DepthImage> cleared = without_blended(given.depth, method_->options.blend);
-  clock.lap(Stage::grid);
-  Detection detection = on_grid(
-      given, cleared ? *cleared : given.depth, method_->options.grid, times,
-      [&](const Frame& grid, int step) {
-        const bool has_person = trace != nullptr && trace->person != nullptr;
-        const Mask person = has_person ? every_nth(*trace->person, step) : Mask{};
-        const auto ask_on_grid = [&] {
-          const Prior prior = ask(given);
-          check(prior, given);
-          return every_nth(prior, step);
-        };
-        return detect_everywhere(*method_, grid, ask_on_grid, trace, person, times);
-      },
-      [&](const GridGuide& guide, Detection& found) {
-        for (Person& person : found.people) enlarge(guide, person);
-        if (trace != nullptr) enlarge(guide, *trace);
-      });
+  Detection detection = region && trace == nullptr
+                            ? detect_within(*method_, given, *region, ask, times)
+                            : detect_upright(*method_, given, method_->options.grid, nullptr, ask, trace, times);
   explain_unseen(given, method_->body, detection.people);
   return detection;
+}
+
+Detection Detector::detect(const Frame& frame, const AskPrior& ask, Trace* trace, StageTimes* times) const {
+  return detect(frame, std::nullopt, ask, trace, times);
 }
 
 std::vector<Person> Detector::detect(const Frame& frame, const Prior& prior, Trace* trace, StageTimes* times) const {
   check(frame);
   check(prior, frame);
   return detect(
-             frame, [&](const Frame&) { return prior; }, trace, times)
+             frame, std::nullopt, [&](const Frame&) { return prior; }, trace, times)
       .people;
 }
 

@@ -568,6 +568,67 @@ TEST_F(DetectorWithPrior, AsksOnceWhenTheFrameIsLabelled) {
   EXPECT_THROW(detector->detect(truth.frame, fails), Error);
 }
 
+/// Finds one of two people who stand side by side, in a picture of which the other's part is not looked at.
+void expect_found_in_a_part(const CapsuleScene& scene, int quarters) {
+  LabelledFrame truth = render(scene, kCamera, paper_body());
+  const Detector detector(truth_model(truth.labels, paper_body(), true));
+  const AskPrior nobody = [](const Frame&) { return Prior{}; };
+  const Detection whole = detector.detect(truth.frame, nobody);
+  ASSERT_EQ(whole.people.size(), 2U);
+  EXPECT_TRUE(whole.whole);
+  const Person& expected = whole.people[0].box.u < whole.people[1].box.u ? whole.people[0] : whole.people[1];
+  constexpr int kRoom = 12;
+  const Box& own = expected.box;
+  const int top = std::max(0, own.v - kRoom), bottom = std::min(kCamera.height, own.v + own.height + kRoom);
+  PictureRegion region{{own.u - kRoom, top, own.width + 2 * kRoom, bottom - top}, whole.planes};
+  Frame frame = truth.frame;
+  if (quarters != 0) {
+    // A camera that is mounted so that its picture must be turned by `quarters` to be this one.
+    region = turned(region, kCamera, 4 - quarters);
+    frame = turned(frame, 4 - quarters);
+    frame.quarter_turns = quarters;
+  }
+  const Detection part = detector.detect(frame, region, nobody);
+  EXPECT_FALSE(part.whole);
+  ASSERT_EQ(part.people.size(), 1U);
+  EXPECT_EQ(part.planes.size(), whole.planes.size());
+  const Detection upright = turned(part, quarters);
+  const Person& found = upright.people[0];
+  ASSERT_TRUE(found.mask.same_size(expected.mask));
+  EXPECT_GT(shared_pixels(found.mask, expected.mask), 0.97F);
+  EXPECT_EQ(found.box.u, bounding_box(found.mask).u);
+  EXPECT_EQ(found.box.height, bounding_box(found.mask).height);
+  for (std::size_t p = 0; p < found.skeleton.parts.size(); ++p) {
+    if (expected.skeleton.parts[p].state != State::observed) continue;
+    EXPECT_LT((found.skeleton.parts[p].centre - expected.skeleton.parts[p].centre).norm(), 0.02F);
+  }
+  Trace trace;
+  if (quarters == 0) {
+    EXPECT_TRUE(detector.detect(frame, region, nobody, &trace).whole) << "a trace is of the whole picture";
+  }
+}
+
+TEST(DetectorInAPart, FindsWhoeverIsThereAsInTheWholePicture) {
+  CapsuleScene scene = one_person(2.8F);
+  scene.people.push_back(scene.people[0]);
+  scene.people[0].feet.x() = -0.7F;
+  scene.people[1].feet.x() = 0.8F;
+  for (const int quarters : {0, 2}) {  // lying pictures have another camera than the labeller knows
+    SCOPED_TRACE(quarters);
+    expect_found_in_a_part(scene, quarters);
+  }
+}
+
+TEST(DetectorInAPart, RefusesOneThatIsNotInThePicture) {
+  const LabelledFrame truth = render(one_person(2.8F), kCamera, paper_body());
+  const Detector detector(truth_model(truth.labels, paper_body(), true));
+  const AskPrior nobody = [](const Frame&) { return Prior{}; };
+  for (const Box& box : {Box{}, Box{0, 0, 10, 0}, Box{-1, 0, 10, 10}, Box{311, 0, 10, 10}, Box{0, 0, 10, 241},
+                         Box{2147483647, 0, 10, 10}}) {
+    EXPECT_THROW(detector.detect(truth.frame, PictureRegion{box, {}}, nobody), Error);
+  }
+}
+
 TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {
   const std::vector<Person> expected = detector->detect(truth.frame);
   expect_same(detector->detect(truth.frame, Prior{}), expected);

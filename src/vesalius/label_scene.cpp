@@ -14,13 +14,6 @@
 namespace vesalius {
 namespace {
 
-/// Returns a picture of the frame's size with `part` at its place and background around.
-LabelImage uncropped(const LabelImage& part, const Box& box, const Camera& camera) {
-  LabelImage out(camera.width, camera.height, kBackground);
-  for (int v = 0; v < box.height; ++v) std::copy_n(part.row(v), box.width, out.row(box.v + v) + box.u);
-  return out;
-}
-
 /// Returns the box with so many more pixels on all sides, as far as the picture goes.
 Box grown(const Box& box, int by, const Camera& camera) {
   const int left = std::max(0, box.u - by), top = std::max(0, box.v - by);
@@ -53,9 +46,15 @@ SceneLabeller::SceneLabeller(Model model, SceneLabelOptions options)
   model_.context = in_order(std::move(model_.context), BodySurroundings::feature_names(body()), "context of bodies");
 }
 
-SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used) const {
+SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used,
+                                       const std::vector<Plane>* known) const {
   SceneLabels scene = std::move(used);
   const auto find_planes = [&] {
+    if (known != nullptr) {
+      scene.planes = *known;
+      scene.flat = pixels_on(*known, frame.depth, frame.camera, options_.plane);
+      return;
+    }
     FlatSurfaces surfaces = find_flat_surfaces(frame.depth, frame.camera, options_.plane);
     scene.planes = std::move(surfaces.planes);
     scene.flat = std::move(surfaces.pixels);
@@ -117,7 +116,7 @@ PersonLabels SceneLabeller::label_with(const Posteriors& posteriors, const Box& 
   const Mask inside = crop(person, of);
   const Box within{box.u - of.u, box.v - of.v, box.width, box.height};
   const LabelImage labels = choose_labels(posteriors, crop(frame.depth, of), {parts, &inside, &within}, options_.label);
-  PersonLabels result{uncropped(labels, of, frame.camera), {}, mean_certainty(posteriors, inside, parts)};
+  PersonLabels result{uncropped(labels, of, frame.camera, kBackground), {}, mean_certainty(posteriors, inside, parts)};
   result.points = sample_points(frame.depth, frame.camera, result.labels, box, posteriors, of, parts);
   return result;
 }

@@ -49,8 +49,9 @@ class SceneLabeller {
   const BodyModel& body() const { return model_.body; }
 
   /// Labels a whole frame and reuses the memory of `used`. Tells `clock` when planes, posteriors, smoothing and context
-  /// are done.
-  SceneLabels label_scene(const Frame& frame, StageClock& clock, SceneLabels used = {}) const;
+  /// are done. Planes that are `known` are not searched for.
+  SceneLabels label_scene(const Frame& frame, StageClock& clock, SceneLabels used = {},
+                          const std::vector<Plane>* known = nullptr) const;
 
   /// Returns the likeliest label of each pixel. The background's posterior counts `background_weight` times.
   LabelImage choose(const SceneLabels& scene, const Frame& frame, float background_weight) const;

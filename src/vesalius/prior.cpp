@@ -36,6 +36,23 @@ void check(const Prior& prior, const Frame& frame) {
   }
 }
 
+void check(const PictureRegion& region, const Frame& frame) {
+  const auto& [u, v, width, height] = region.box;
+  const int picture_width = frame.depth.width(), picture_height = frame.depth.height();
+  const bool within = u >= 0 && v >= 0 && u <= picture_width - width && v <= picture_height - height;
+  if (width > 0 && height > 0 && within) return;
+  throw Error("region: " + std::to_string(width) + "x" + std::to_string(height) + " pixels at (" + std::to_string(u) +
+              ", " + std::to_string(v) + "), expected some within the frame's " + std::to_string(picture_width) + "x" +
+              std::to_string(picture_height));
+}
+
+Prior cropped(Prior prior, const Box& box) {
+  for (Prior::KnownPerson& known : prior.people) {
+    if (!known.mask.empty()) known.mask = crop(known.mask, box);
+  }
+  return prior;
+}
+
 Prior every_nth(const Prior& prior, int step) {
   Prior coarse = prior;
   for (Prior::KnownPerson& known : coarse.people) known.mask = every_nth(known.mask, step);

@@ -1,6 +1,8 @@
 #include "vesalius/upright.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace vesalius {
@@ -145,6 +147,16 @@ Prior turned(Prior prior, int quarters) {
     }
   }
   return prior;
+}
+
+PictureRegion turned(PictureRegion region, const Camera& camera, int quarters) {
+  const Box& box = region.box;
+  const auto corner = [&](int u, int v) { return turned_pixel(u, v, camera.width, camera.height, quarters); };
+  const auto [u, v] = corner(box.u, box.v);
+  const auto [other_u, other_v] = corner(box.u + box.width - 1, box.v + box.height - 1);
+  region.box = {std::min(u, other_u), std::min(v, other_v), std::abs(u - other_u) + 1, std::abs(v - other_v) + 1};
+  for (Plane& plane : region.planes) turn(plane.normal, quarters);
+  return region;
 }
 
 Detection turned(Detection found, int quarters) {

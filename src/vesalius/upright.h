@@ -25,6 +25,8 @@ Camera turned(const Camera& camera, int quarters);
 Frame turned(const Frame& frame, int quarters);
 Mask turned(const Mask& mask, int quarters);
 Prior turned(Prior prior, int quarters);
+/// `camera` is that of the picture before it is turned.
+PictureRegion turned(PictureRegion region, const Camera& camera, int quarters);
 Detection turned(Detection found, int quarters);
 /// Trace::person stays as it is.
 Trace turned(Trace trace, int quarters);

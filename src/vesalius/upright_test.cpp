@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/random.h"
 
 namespace vesalius {
@@ -96,6 +97,10 @@ TEST(Upright, TurningBackGivesWhatWasThere) {
     EXPECT_EQ(twice.people[0].skeleton.parts[0].centre, found.people[0].skeleton.parts[0].centre);
     EXPECT_EQ(twice.people[0].points[0].at, found.people[0].points[0].at);
     EXPECT_EQ(twice.planes[0].normal, found.planes[0].normal);
+    const PictureRegion region{{2, 1, 3, 2}, found.planes};
+    const PictureRegion lying = turned(region, frame.camera, quarters);
+    EXPECT_EQ(crop(turned(frame, quarters).depth, lying.box), turned(cropped(frame, region.box), quarters).depth);
+    EXPECT_EQ(lying.planes[0].normal, once.planes[0].normal);
     const Prior known = turned(turned(prior, quarters), back);
     EXPECT_EQ(known.people[0].mask, prior.people[0].mask);
     EXPECT_EQ(known.people[0].flesh[0].to, prior.people[0].flesh[0].to);

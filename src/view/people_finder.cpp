@@ -62,13 +62,6 @@ void PeopleFinder::begin_anew() {
                    std::make_shared<const BodyFitter>(detector.body(), options.fit));
 }
 
-std::vector<Person> PeopleFinder::detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const {
-  Trace* const trace = viewed.trace ? &*viewed.trace : nullptr;
-  Detection found = settings_->detector.detect(frame, ask, trace, &viewed.times);
-  viewed.planes = std::move(found.planes);
-  return std::move(found.people);
-}
-
 void PeopleFinder::follow(ViewedFrame& viewed) {
   // Some frames are dropped, and people move in a source: where frames have no times, their places count.
   std::optional<Frame> timed;
@@ -78,13 +71,12 @@ void PeopleFinder::follow(ViewedFrame& viewed) {
   }
   const Frame& frame = timed ? *timed : *viewed.frame;
   PeopleTracker& tracker = tracks_->before(viewed.at_s);
-  const auto ask = [&](const Frame& asked) {
-    Prior prior;
-    viewed.track_ms += elapsed_ms([&] { prior = tracker.expect(asked); });
-    return prior;
-  };
-  std::vector<Person> found = detect(frame, ask, viewed);
-  viewed.track_ms += elapsed_ms([&] { viewed.people = tracker.update(frame, std::move(found), viewed.planes); });
+  FollowReport report;
+  report.trace = viewed.trace ? &*viewed.trace : nullptr;
+  viewed.people = vesalius::follow(settings_->detector, tracker, frame, report);
+  viewed.planes = std::move(report.planes);
+  viewed.times = report.times;
+  viewed.track_ms = report.track_ms;
 }
 
 ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played, const Settings& settings,
@@ -100,7 +92,10 @@ ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played,
     if (merge_) viewed.people = merge_(frame, moment_of(frame, viewed.at_s), std::move(viewed.people));
   } else {
     const auto nothing = [](const Frame&) { return Prior{}; };
-    viewed.people = seen_people(detect(*viewed.frame, nothing, viewed));
+    Trace* const trace = viewed.trace ? &*viewed.trace : nullptr;
+    Detection found = settings_->detector.detect(*viewed.frame, nothing, trace, &viewed.times);
+    viewed.planes = std::move(found.planes);
+    viewed.people = seen_people(std::move(found.people));
   }
   viewed.number = ++frames_;
   return viewed;

@@ -66,7 +66,6 @@ class PeopleFinder {
 
  private:
   void take_over(const Settings& settings);
-  std::vector<Person> detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const;
   void follow(ViewedFrame& viewed);
 
   Settings settings_;

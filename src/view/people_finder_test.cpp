@@ -16,7 +16,7 @@ using testing::IsEmpty;
 class Shown {
  public:
   explicit Shown(bool with_looks = true)
-      : detector_(std::make_shared<test::Knowing>(source_)),
+      : detector_(std::make_shared<test::Knowing>(source_.frames())),
         history_(PeopleTracker(paper_body(), {}, with_looks ? detector_.appearance() : nullptr)) {
     for (const LabelledFrame& truth : source_.frames()) people_.push_back(detector_.detect(truth.frame));
   }
@@ -25,7 +25,7 @@ class Shown {
   TrackedFrame show(int place, double time_s) {
     Frame frame = source_.frames().at(static_cast<std::size_t>(place)).frame;
     frame.time_s = time_s;
-    return history_.before(time_s).update(frame, people_.at(static_cast<std::size_t>(place)));
+    return history_.before(time_s).update(frame, {people_.at(static_cast<std::size_t>(place))});
   }
   /// Shows a place at its time.
   TrackedFrame show(int place) { return show(place, time_of(place)); }
@@ -121,8 +121,8 @@ TEST(TrackHistory, BegunAnewItCountsOn) {
 
 TEST(PeopleFinder, AddsWhomOtherCamerasSee) {
   test::Crossing source(true);
-  const auto settings =
-      std::make_shared<const FinderSettings>(FinderSettings{{}, Detector(std::make_shared<test::Knowing>(source))});
+  const auto settings = std::make_shared<const FinderSettings>(
+      FinderSettings{{}, Detector(std::make_shared<test::Knowing>(source.frames()))});
   std::vector<double> times;
   PeopleFinder finder(settings, true, [&](const Frame&, double time_s, TrackedFrame people) {
     times.push_back(time_s);

@@ -44,7 +44,7 @@ class Finding {
   }
 
  private:
-  Detector detector() { return Detector(std::make_shared<test::Knowing>(source_)); }
+  Detector detector() { return Detector(std::make_shared<test::Knowing>(source_.frames())); }
 
   test::Crossing source_;
   PeopleFinder::Settings settings_;

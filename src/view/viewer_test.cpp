@@ -156,7 +156,7 @@ TEST(Viewer, PausedDoesWhatItIsTold) {
 /// Runs a viewer of two people who cross, paused at the first frame.
 std::unique_ptr<Running> run_crossing(bool timed, const ViewerOptions& options = viewer_options(true, ".")) {
   auto source = std::make_unique<test::Crossing>(timed);
-  auto labeller = std::make_shared<test::Knowing>(*source);
+  auto labeller = std::make_shared<test::Knowing>(source->frames());
   return std::make_unique<Running>(std::move(source), std::move(labeller), options);
 }
 

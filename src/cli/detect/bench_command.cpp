@@ -86,21 +86,16 @@ std::vector<Run> runs_for(const std::string& threads) {
 
 void measure(const Detector& detector, const Frame& frame, double read_ms, Run& run) {
   const ThreadLimit limit(run.threads);
-  StageTimes stages;
-  double track_ms = 0.0;
-  const auto expect = [&](const Frame& asked) {
-    Prior prior;
-    if (run.tracker) track_ms += elapsed_ms([&] { prior = run.tracker->expect(asked); });
-    return prior;
-  };
+  FollowReport report;
   const std::clock_t before = std::clock();
-  Detection found = detector.detect(frame, expect, nullptr, &stages);
   if (run.tracker) {
-    track_ms += elapsed_ms([&] { run.tracker->update(frame, std::move(found.people), found.planes); });
+    follow(detector, *run.tracker, frame, report);
+  } else {
+    detector.detect(frame, nullptr, &report.times);
   }
   run.processor_ms += double(std::clock() - before) * 1e3 / CLOCKS_PER_SEC;
-  run.times.add(stages, read_ms, -1.0);
-  if (run.tracker) run.times.add_tracking(track_ms);
+  run.times.add(report.times, read_ms, -1.0);
+  if (run.tracker) run.times.add_tracking(report.track_ms);
 }
 
 /// Measures every frame with each number of threads in turn, so that other load on the machine affects all of them

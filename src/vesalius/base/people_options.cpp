@@ -141,6 +141,8 @@ void visit_options(const std::string& prefix, TrackOptions& o, OptionVisitor& vi
                  {"", 0.0, 10.0, "Greatest difference of looks of somebody who comes back."});
   visitor.option(prefix + "odds", o.odds,
                  {"", 1.0, 1000.0, "Most by which having been found multiplies the odds of being found again."});
+  visitor.option(prefix + "whole", o.whole_s,
+                 {"s", 0.0, 60.0, "Time between looks at the whole picture; 0 always looks at all of it."});
   visitor.option(prefix + "smooth", o.smooth, {"", 0, 1, "Whether joints are smoothed over time as well."});
   visitor.option(prefix + "smooth-cutoff", o.smoothing.cutoff_hz,
                  {"Hz", 0.01, 1000.0, "Cutoff of the smoothing of joints at rest."});

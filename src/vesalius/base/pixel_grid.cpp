@@ -1,5 +1,7 @@
 #include "vesalius/base/pixel_grid.h"
 
+#include <utility>
+
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -31,6 +33,32 @@ Camera cropped(Camera camera, const Box& box) {
   camera.cx -= float(box.u);
   camera.cy -= float(box.v);
   return camera;
+}
+
+Frame cropped(const Frame& frame, const Box& box) {
+  Frame part;
+  part.name = frame.name;
+  part.time_s = frame.time_s;
+  part.up = frame.up;
+  part.quarter_turns = frame.quarter_turns;
+  part.depth = crop(frame.depth, box);
+  if (!frame.colour.empty()) part.colour = crop(frame.colour, box);
+  part.camera = cropped(frame.camera, box);
+  return part;
+}
+
+Box in_blocks(const Box& box, const Camera& camera, int step) {
+  constexpr int kAligned = 4;  // columns and rows of the grid that are looked at together (BackgroundGate)
+  const int block = kGridBlock * step, aligned = kAligned * step;
+  const auto side = [&](int from, int length, int whole) {
+    const int wide = std::min(whole, (length + 2 * aligned + block - 1) / block * block);
+    int begin = std::clamp(from - (wide - length) / 2, 0, whole - wide);
+    begin -= begin % aligned;
+    return std::pair{begin, std::max(wide, from + length - begin)};
+  };
+  const auto [u, width] = side(box.u, box.width, camera.width);
+  const auto [v, height] = side(box.v, box.height, camera.height);
+  return {u, v, width, height};
 }
 
 GridGuide::GridGuide(const DepthImage& depth, int step) : depth_(depth), step_(step) {

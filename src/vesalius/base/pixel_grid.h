@@ -17,6 +17,9 @@ namespace vesalius {
 /// and 848x480.
 inline constexpr long kMostPixels = 250'000;
 
+/// Columns and rows of the grid that labellers take at once: a network halves its picture five times.
+inline constexpr int kGridBlock = 32;
+
 /// Rows of a picture that a thread takes at once (parallel_ranges).
 inline constexpr int kRowGrain = 8;
 
@@ -42,6 +45,19 @@ inline Frame every_nth(const Frame& frame, int step) { return every_nth(frame, f
 
 /// Returns the camera of the picture inside a box, which gives each pixel the same point as before.
 Camera cropped(Camera camera, const Box& box);
+/// Returns the frame of the picture inside a box.
+Frame cropped(const Frame& frame, const Box& box);
+
+/// Returns a picture of the camera's size with `part` in the box and `outside` around it.
+template <class T>
+Image<T> uncropped(const Image<T>& part, const Box& box, const Camera& camera, T outside) {
+  Image<T> out(camera.width, camera.height, outside);
+  for (int v = 0; v < box.height; ++v) std::copy_n(part.row(v), box.width, out.row(box.v + v) + box.u);
+  return out;
+}
+
+/// Returns the box in whole blocks of the grid, as far as the picture goes. It begins at a pixel of the grid.
+Box in_blocks(const Box& box, const Camera& camera, int step);
 
 /// A pixel of a grid, in the whole picture's coordinates.
 struct GridPixel {

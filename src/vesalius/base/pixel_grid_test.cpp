@@ -54,6 +54,53 @@ TEST(EveryNth, KeepsThePointsOfPixels) {
   EXPECT_EQ(every_nth(frame, 1).camera, frame.camera);
 }
 
+TEST(InBlocks, HoldsTheBoxInWholeBlocksOfThePicture) {
+  Random random(7);
+  const auto below = [&](int end) { return int(random.below(static_cast<std::uint32_t>(end))); };
+  for (int i = 0; i < 2000; ++i) {
+    const Camera camera{1 + below(900), 1 + below(900), 500.F, 500.F, 0.F, 0.F};
+    const int step = 1 + below(3), width = 1 + below(camera.width), height = 1 + below(camera.height);
+    const Box box{below(camera.width - width + 1), below(camera.height - height + 1), width, height};
+    const Box blocks = in_blocks(box, camera, step);
+    ASSERT_LE(blocks.u, box.u);
+    ASSERT_LE(blocks.v, box.v);
+    ASSERT_GE(blocks.u + blocks.width, box.u + box.width);
+    ASSERT_GE(blocks.v + blocks.height, box.v + box.height);
+    ASSERT_GE(std::min(blocks.u, blocks.v), 0);
+    ASSERT_LE(blocks.u + blocks.width, camera.width);
+    ASSERT_LE(blocks.v + blocks.height, camera.height);
+    ASSERT_EQ(blocks.u % (4 * step), 0);
+    ASSERT_EQ(blocks.v % (4 * step), 0);
+    // Whole blocks but at the picture's end.
+    ASSERT_TRUE(blocks.width % (32 * step) == 0 || blocks.u + blocks.width > camera.width - 4 * step);
+    ASSERT_LT(blocks.width, box.width + (32 + 8 + 4) * step);
+  }
+}
+
+TEST(Cropped, KeepsThePointsOfPixels) {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  Frame frame = render(scene, {163, 121, 131.F, 129.F, 80.2F, 61.7F}, paper_body()).frame;
+  frame.time_s = 2.5;
+  frame.up = -Eigen::Vector3f::UnitY();
+  const Box box{40, 20, 64, 70};
+  const Frame part = cropped(frame, box);
+  EXPECT_NO_THROW(check(part));
+  EXPECT_EQ(part.time_s, 2.5);
+  EXPECT_EQ(part.up, frame.up);
+  for (int v = 0; v < box.height; ++v) {
+    for (int u = 0; u < box.width; ++u) {
+      const Eigen::Vector3f whole = point_at(frame.camera, frame.depth, box.u + u, box.v + v);
+      ASSERT_LT((point_at(part.camera, part.depth, u, v) - whole).norm(), 1e-4F);
+      ASSERT_EQ(part.colour(u, v), frame.colour(box.u + u, box.v + v));
+    }
+  }
+  const DepthImage again = uncropped(part.depth, box, frame.camera, std::uint16_t{7});
+  EXPECT_EQ(crop(again, box), part.depth);
+  EXPECT_EQ(again(0, 0), 7);
+  EXPECT_EQ(again(box.u + box.width, box.v), 7);
+}
+
 TEST(GridGuide, TakesTheValueOfTheNeighbourWithTheNearestDepth) {
   DepthImage depth(5, 3, 2000);
   depth(2, 0) = 1000;  // a person in front of a wall

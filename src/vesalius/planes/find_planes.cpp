@@ -258,6 +258,11 @@ FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, c
   return flat;
 }
 
+Mask pixels_on(const std::vector<Plane>& planes, const DepthImage& depth, const Camera& camera,
+               const PlaneOptions& options) {
+  return pixels_on(planes, take_samples(depth, camera), depth, camera, options);
+}
+
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
   return find_flat_surfaces(depth, camera, options).pixels;
 }

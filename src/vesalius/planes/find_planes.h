@@ -25,6 +25,10 @@ struct FlatSurfaces {
 /// Searches once for both.
 FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
+/// Returns the pixels of known surfaces, as flat_pixels.
+Mask pixels_on(const std::vector<Plane>& planes, const DepthImage& depth, const Camera& camera,
+               const PlaneOptions& options);
+
 /// Returns 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the
 /// same way. Where a plane runs on through a person, the person is not on it.
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);

@@ -47,6 +47,7 @@ TEST(FindPlanes, OneSearchGivesPlanesAndTheirPixels) {
   const FlatSurfaces both = find_flat_surfaces(room.frame.depth, kCamera, {});
   const std::vector<Plane> planes = find_planes(room.frame.depth, kCamera, {});
   EXPECT_EQ(both.pixels, flat_pixels(room.frame.depth, kCamera, {}));
+  EXPECT_EQ(pixels_on(both.planes, room.frame.depth, kCamera, {}), both.pixels) << "of known planes the same";
   ASSERT_EQ(both.planes.size(), planes.size());
   ASSERT_FALSE(planes.empty());
   for (std::size_t i = 0; i < planes.size(); ++i) {

@@ -19,6 +19,7 @@
 #include "vesalius/track/track_clock.h"
 #include "vesalius/track/track_floor.h"
 #include "vesalius/track/track_stance.h"
+#include "vesalius/track/track_view.h"
 #include "vesalius/upright.h"
 
 namespace vesalius {
@@ -32,6 +33,11 @@ constexpr float kSlow_m_s = 0.2F;          // at most, of somebody who rests
 constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who lay there
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
+
+constexpr float kSurelyFound = 0.95F;        // least score of those for whom a part of the picture is enough
+constexpr double kRegionLarger = 1.0 / 3.0;  // than the box about people
+constexpr int kLeastRoom = 20;               // around it, in shares of the picture's width
+constexpr double kLargestRegion = 0.6;       // share of the picture; of more there is nothing to gain
 
 constexpr float kClearScore = 0.8F;  // that the frames in which somebody new is found have on average, at least
 
@@ -141,6 +147,39 @@ bool rests(const Track& track, const Frame& frame) {
   return slow && is_unchanged(track, frame);
 }
 
+/// Returns the box of somebody seen in the frame before with room around it, where the person has gone by now; empty if
+/// that is unknown.
+Box box_to_look_at(const Track& track, const Frame& frame, double passed_s) {
+  TrackMotion motion = track.motion;
+  motion.predict(passed_s);
+  const Eigen::Vector3f &from = track.place_position, &to = motion.position();
+  const Box& box = track.place.box();
+  const Camera& camera = frame.camera;
+  if (box.width == 0 || !(from.z() > 0.F) || !(to.z() > 0.F)) return {};
+  const Eigen::Vector2f moved = camera.pixel(to) - camera.pixel(from);
+  if (!(std::abs(moved.x()) < float(camera.width)) || !(std::abs(moved.y()) < float(camera.height))) return {};
+  const auto room = [&](int side) {
+    return std::max(camera.width / kLeastRoom, int(kRegionLarger / 2.0 * double(side)));
+  };
+  const int right = room(box.width), below = room(box.height);
+  const int du = int(std::lround(moved.x())), dv = int(std::lround(moved.y()));
+  const int u = std::max(0, box.u + du - right), v = std::max(0, box.v + dv - below);
+  const int end_u = std::min(camera.width, box.u + du + box.width + right);
+  const int end_v = std::min(camera.height, box.v + dv + box.height + below);
+  if (end_u <= u || end_v <= v) return {};
+  return {u, v, end_u - u, end_v - v};
+}
+
+/// Returns whether somebody found in a region of a frame may go on beyond it.
+bool reaches_out(const std::vector<Person>& people, const Box& region, const Camera& camera) {
+  return std::ranges::any_of(people, [&](const Person& person) {
+    const Box& box = person.box;
+    return (box.u <= region.u && region.u > 0) || (box.v <= region.v && region.v > 0) ||
+           (box.u + box.width >= region.u + region.width && region.u + region.width < camera.width) ||
+           (box.v + box.height >= region.v + region.height && region.v + region.height < camera.height);
+  });
+}
+
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
 
 }  // namespace
@@ -182,6 +221,7 @@ struct PeopleTracker::State {
   const std::shared_ptr<const Appearance> appearance;
   const std::shared_ptr<const BodyFitter> fitter;
   TrackClock clock;
+  TrackView view;
   TrackFloor floor;
   int last_id = 0;
   std::vector<Track> tracks;  ///< by id
@@ -485,10 +525,29 @@ Prior PeopleTracker::expect(const Frame& frame) const {
   return prior;
 }
 
-TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> people, const std::vector<Plane>& planes) {
+bool PeopleTracker::knows_regions() const { return state_->options.whole_s > 0.F; }
+
+std::optional<PictureRegion> PeopleTracker::region(const Frame& frame) const {
+  const State& s = *state_;
+  const TrackStep step = s.clock.step_to(frame);
+  const bool long_ago = !(step.time_s - s.view.time_s() < double(s.options.whole_s));
+  if (step.jump || long_ago || s.tracks.empty()) return std::nullopt;
+  Box box;
+  for (const Track& track : s.tracks) {
+    if (track.person.score < kSurelyFound) return std::nullopt;
+    const Box own = track.seen_s + step.passed_s < step.time_s ? Box{} : box_to_look_at(track, frame, step.passed_s);
+    if (own.width == 0) return std::nullopt;
+    box = around(box, own);
+  }
+  const double share = double(box.width) * double(box.height) / double(frame.depth.size());
+  if (share > kLargestRegion || !s.view.unchanged(frame, box)) return std::nullopt;
+  return PictureRegion{box, s.view.planes()};
+}
+
+TrackedFrame PeopleTracker::update(const Frame& frame, Detection found) {
   State& s = *state_;
   check(frame);
-  std::vector<Sighting> sightings = s.look_at_all(frame, std::move(people));
+  std::vector<Sighting> sightings = s.look_at_all(frame, std::move(found.people));
   const TrackStep step = s.clock.step_to(frame);
   s.clock.go(frame);
   TrackedFrame out;
@@ -497,7 +556,12 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
     s.lose_all(step.time_s, out);
     s.floor.reset();
   }
-  s.floor.update(planes, frame.up, step.passed_s, guessed_up(frame));
+  if (found.whole) {
+    Box people;
+    for (const Sighting& sighting : sightings) people = around(people, sighting.person.box);
+    s.view.take_frame(frame, step.time_s, found.planes, people);
+  }
+  s.floor.update(found.planes, frame.up, step.passed_s, guessed_up(frame));
   out.floor = s.floor.view();
   s.predict(frame, step.passed_s);
   const std::vector<int> sighting_of = s.follow(frame, sightings, step.time_s, out);
@@ -513,8 +577,31 @@ PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& option
 }
 
 TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame) {
-  Detection found = detector.detect(frame, [&](const Frame& asked) { return tracker.expect(asked); });
-  return tracker.update(frame, std::move(found.people), found.planes);
+  FollowReport report;
+  return follow(detector, tracker, frame, report);
+}
+
+TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame, FollowReport& report) {
+  const auto timed = [&](const auto& work) { report.track_ms += elapsed_ms(work); };
+  const AskPrior ask = [&](const Frame& asked) {
+    if (report.wait) report.wait();
+    Prior prior;
+    timed([&] { prior = tracker.expect(asked); });
+    return prior;
+  };
+  std::optional<PictureRegion> region;
+  if (tracker.knows_regions() && report.trace == nullptr) {
+    if (report.wait) report.wait();
+    timed([&] { region = tracker.region(frame); });
+  }
+  Detection found = detector.detect(frame, region, ask, report.trace, &report.times);
+  if (region && reaches_out(found.people, region->box, frame.camera)) {
+    found = detector.detect(frame, ask, nullptr, &report.times);
+  }
+  report.planes = found.planes;
+  TrackedFrame followed;
+  timed([&] { followed = tracker.update(frame, std::move(found)); });
+  return followed;
 }
 
 }  // namespace vesalius

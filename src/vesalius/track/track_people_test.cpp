@@ -116,7 +116,7 @@ class Follower {
     Stage stage(actors);
     stage.frame.time_s = static_cast<double>(frames_++) * kFrame_s;
     const std::vector<Person> people = stage.people;
-    TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    TrackedFrame tracked = tracker.update(stage.frame, {stage.people});
     for (const TrackedPerson& person : tracked.people) {
       if (person.state != TrackState::tracked && person.state != TrackState::fresh) continue;
       for (std::size_t i = 0; i < people.size(); ++i) {
@@ -314,7 +314,7 @@ TEST(TrackPeople, TheOrderOfTheListDoesNotMatter) {
     for (std::size_t i = other.size(); i > 1; --i) {
       std::swap(other[i - 1], other[random.below(static_cast<std::uint32_t>(i))]);
     }
-    const TrackedFrame a = sorted.update(stage.frame, stage.people), b = shuffled.update(stage.frame, other);
+    const TrackedFrame a = sorted.update(stage.frame, {stage.people}), b = shuffled.update(stage.frame, {other});
     ASSERT_EQ(a.people.size(), b.people.size());
     for (std::size_t i = 0; i < a.people.size(); ++i) {
       EXPECT_EQ(a.people[i].id, b.people[i].id);
@@ -409,7 +409,7 @@ TEST(TrackedTime, OfSourcesWithoutTimesFollowsFromTheRate) {
   options.rate = 10.F;
   PeopleTracker tracker(paper_body(), options);
   const Stage stage({Actor{}});
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(tracker.update(stage.frame, stage.people).time_s, 0.1 * i, 1e-9);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(tracker.update(stage.frame, {stage.people}).time_s, 0.1 * i, 1e-9);
 }
 
 TEST(TrackedTime, ThatJumpsLosesAllButRemembersLooks) {
@@ -418,7 +418,7 @@ TEST(TrackedTime, ThatJumpsLosesAllButRemembersLooks) {
     Stage stage({Actor{}});
     for (int i = 0; i < 10; ++i) {
       stage.frame.time_s = 100.0 + i * kFrame_s;
-      tracker.update(stage.frame, stage.people);
+      tracker.update(stage.frame, {stage.people});
     }
     stage.frame.time_s = 100.0 + jump;
     EXPECT_TRUE(tracker.expect(stage.frame).people.empty());
@@ -426,7 +426,7 @@ TEST(TrackedTime, ThatJumpsLosesAllButRemembersLooks) {
     ASSERT_EQ(after.people.size(), 1U) << jump;
     EXPECT_EQ(after.people[0].state, TrackState::lost);
     *stage.frame.time_s += kFrame_s;
-    EXPECT_EQ(tracker.update(stage.frame, stage.people).people.at(0).id, 1);
+    EXPECT_EQ(tracker.update(stage.frame, {stage.people}).people.at(0).id, 1);
   }
 }
 
@@ -438,7 +438,7 @@ TEST(TrackedTime, OfAFrameThatComesLateLosesNobody) {
     stage.frame.time_s = 100.0 + place * kFrame_s;
     const bool expected = !tracker.expect(stage.frame).people.empty();
     EXPECT_EQ(expected, place != 0) << place;
-    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    const TrackedFrame tracked = tracker.update(stage.frame, {stage.people});
     ASSERT_EQ(tracked.people.size(), 1U) << place;
     EXPECT_EQ(tracked.people[0].id, 1);
     EXPECT_NE(tracked.people[0].state, TrackState::lost);
@@ -454,7 +454,7 @@ TEST(TrackedTime, OfAClockSetBackALittleGoesOn) {
   TrackedFrame tracked;
   for (int i = 0; i < 60; ++i) {
     stage.frame.time_s = 100.0 + i * kFrame_s - (i < 30 ? 0.0 : 0.8);
-    tracked = tracker.update(stage.frame, stage.people);
+    tracked = tracker.update(stage.frame, {stage.people});
     ASSERT_EQ(tracked.people.size(), 1U) << i;
     ASSERT_EQ(tracked.people[0].id, 1);
   }
@@ -469,7 +469,7 @@ TEST(TrackedTime, ThatStandsStillOrIsNonsenseIsBorne) {
   for (const std::optional<double>& time : times) {
     stage.frame.time_s = time;
     tracker.expect(stage.frame);
-    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    const TrackedFrame tracked = tracker.update(stage.frame, {stage.people});
     EXPECT_TRUE(std::isfinite(tracked.time_s));
     ASSERT_EQ(tracked.people.size(), 1U);
     EXPECT_EQ(tracked.people[0].id, 1);
@@ -486,12 +486,12 @@ TEST(TrackPeople, FramesOfAnotherSizeGoOn) {
     for (const Prior::KnownPerson& known : tracker.expect(stage.frame).people) {
       EXPECT_TRUE(known.mask.same_size(stage.frame.depth));
     }
-    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    const TrackedFrame tracked = tracker.update(stage.frame, {stage.people});
     ASSERT_EQ(tracked.people.size(), 1U);
     EXPECT_EQ(tracked.people[0].id, 1);
   }
   const Stage small({Actor{}}, half);
-  const TrackedFrame tracked = tracker.update(Stage({Actor{}}).frame, small.people);
+  const TrackedFrame tracked = tracker.update(Stage({Actor{}}).frame, {small.people});
   ASSERT_EQ(tracked.people.size(), 1U) << "by the parts";
   EXPECT_TRUE(tracked.people[0].person.mask.empty());
 }
@@ -512,7 +512,7 @@ TEST(TrackPeople, APersonOfTwoPixelsOrOfNothing) {
   nan.score = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < 20; ++i) {
     tracker.expect(stage.frame);
-    const TrackedFrame tracked = tracker.update(stage.frame, {two, nothing, nan});
+    const TrackedFrame tracked = tracker.update(stage.frame, {{two, nothing, nan}});
     EXPECT_LE(tracked.people.size(), 2U);
     for (const TrackedPerson& person : tracked.people) EXPECT_TRUE(person.position.allFinite());
   }
@@ -522,7 +522,7 @@ TEST(TrackPeople, RefusesPeopleOfAnotherBodyAndOptionsOutOfRange) {
   PeopleTracker tracker(paper_body());
   Stage stage({Actor{}});
   stage.people[0].skeleton.parts.pop_back();
-  EXPECT_THAT([&] { tracker.update(stage.frame, stage.people); },
+  EXPECT_THAT([&] { tracker.update(stage.frame, {stage.people}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("24 parts")));
   TrackOptions options;
   options.rate = 0.F;
@@ -543,7 +543,7 @@ TEST(TrackPeople, AHundredFalseOnesAFrameAreBorne) {
       person.score = static_cast<float>(random.uniform());
     }
     EXPECT_LE(tracker.expect(stage.frame).people.size(), 16U);
-    const TrackedFrame tracked = tracker.update(stage.frame, std::move(people));
+    const TrackedFrame tracked = tracker.update(stage.frame, {std::move(people)});
     EXPECT_LE(tracked.people.size(), 2U * 128U);
   }
 }
@@ -563,7 +563,7 @@ TEST(TrackPeople, HoursOfPassersByAreForgotten) {
     for (int i = 0; i < 20; ++i) {
       Stage& stage = i < 5 ? there : empty;
       stage.frame.time_s = static_cast<double>(frames++) * kFrame_s;
-      const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+      const TrackedFrame tracked = tracker.update(stage.frame, {stage.people});
       most = std::max(most, tracked.people.size());
       for (const TrackedPerson& person : tracked.people) ids.insert(person.id);
     }
@@ -604,7 +604,7 @@ TEST(TrackPeople, HaveABodyThatFadesWhileTheyAreHidden) {
   const auto [frame, person] = rendered_person();
   PeopleTracker tracker(paper_body(), {}, nullptr, std::make_shared<BodyFitter>(paper_body()));
   TrackedFrame tracked;
-  for (int i = 0; i < 4; ++i) tracked = tracker.update(frame, {person});
+  for (int i = 0; i < 4; ++i) tracked = tracker.update(frame, {{person}});
   ASSERT_EQ(tracked.people.size(), 1U);
   ASSERT_TRUE(tracked.people[0].body);
   const FittedBody seen = *tracked.people[0].body;
@@ -632,7 +632,7 @@ TEST(TrackPeople, ExpectTheSizeOfTheFittedBodyOnceItHasSettled) {
   for (int i = 0; i < BodyHistory::kSettledFrames; ++i) {
     const Prior prior = tracker.expect(frame);
     for (const Prior::KnownPerson& known : prior.people) EXPECT_EQ(known.size, 1.F);
-    tracked = tracker.update(frame, {person});
+    tracked = tracker.update(frame, {{person}});
   }
   const FleshModel& flesh = builtin_flesh();
   const double usual_m = stature(flesh, Eigen::VectorXd::Zero(flesh.shapes));
@@ -659,7 +659,7 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   std::vector<StanceEvent> events;
   for (int i = 0; i < 60; ++i) {
     // The hips are 0.2 m below the camera, the head's parts 0.55 m above it.
-    const TrackedFrame tracked = tracker.update(stage.frame, stage.people, {{Vector3f::UnitY(), 1.1F, 4.F}});
+    const TrackedFrame tracked = tracker.update(stage.frame, {stage.people, {{Vector3f::UnitY(), 1.1F, 4.F}}});
     events.insert(events.end(), tracked.events.begin(), tracked.events.end());
     if (i == 59) {
       ASSERT_TRUE(tracked.floor);
@@ -696,7 +696,7 @@ TEST(TrackPeople, WhoIsNearTheFloorIsFollowedWhileSomethingIsThere) {
     const auto show = [&](const std::vector<Actor>& actors) {
       Stage stage(actors);
       stage.frame.time_s = time_s;
-      return tracker.update(stage.frame, stage.people, each.planes);
+      return tracker.update(stage.frame, {stage.people, each.planes});
     };
     for (int i = 0; i < 30; ++i, time_s += 0.1) ASSERT_EQ(show({Actor{}}).people.front().id, 1);
     const double last_s = time_s - 0.1;
@@ -724,10 +724,101 @@ TEST(TrackPeople, TellWhoStandsByTheFittedBodyWhereNoHipsAreSeen) {
   for (const bool fits : {false, true}) {
     PeopleTracker tracker(body, {}, nullptr, fits ? std::make_shared<BodyFitter>(body) : nullptr);
     TrackedFrame tracked;
-    for (int i = 0; i < 40; ++i) tracked = tracker.update(frame, {person}, {floor});
+    for (int i = 0; i < 40; ++i) tracked = tracker.update(frame, {{person}, {floor}});
     ASSERT_EQ(tracked.people.size(), 1U);
     EXPECT_EQ(tracked.people[0].stance, fits ? Stance::standing : Stance::unknown);
   }
+}
+
+/// Somebody who is surely found, in a picture that is large enough for a part of it to matter.
+class PartOfThePicture : public testing::Test {
+ protected:
+  PartOfThePicture() { somebody_.score = 0.99F; }
+
+  std::optional<PictureRegion> region(const std::vector<Actor>& actors, double time_s) {
+    Stage stage(actors);
+    stage.frame.time_s = time_s;
+    return tracker_.region(stage.frame);
+  }
+  void show(const std::vector<Actor>& actors, double time_s, bool whole = true) {
+    Stage stage(actors);
+    stage.frame.time_s = time_s;
+    tracker_.update(stage.frame, {stage.people, planes_, whole});
+  }
+
+  Actor somebody_;
+  std::vector<Plane> planes_{{Vector3f::UnitZ(), kWall_m, 8.F}};
+  PeopleTracker tracker_{paper_body(), {}, hue()};
+};
+
+TEST_F(PartOfThePicture, IsWherePeopleWillBe) {
+  EXPECT_FALSE(region({somebody_}, 0.0)) << "nothing is known";
+  show({somebody_}, 0.0);
+  const std::optional<PictureRegion> around = region({somebody_}, kFrame_s);
+  ASSERT_TRUE(around);
+  EXPECT_EQ(around->planes.size(), 1U);
+  const Box own = bounding_box(Stage({somebody_}).people[0].mask), &box = around->box;
+  EXPECT_LT(box.u, own.u - 3);
+  EXPECT_GT(box.u + box.width, own.u + own.width + 3);
+  EXPECT_LT(box.width, 2 * own.width);
+  EXPECT_GE(box.width, own.width + own.width / 3);
+  EXPECT_GE(box.v, 0);
+  EXPECT_LE(box.v + box.height, kCamera.height);
+  // Somebody who walks is looked for where the way goes on.
+  Actor walks = somebody_;
+  for (int i = 1; i < 15; ++i) {
+    walks.trunk.x() += 0.06F;
+    show({walks}, i * kFrame_s);
+  }
+  const Box last = bounding_box(Stage({walks}).people[0].mask);
+  const std::optional<PictureRegion> ahead = region({walks}, 15 * kFrame_s);
+  ASSERT_TRUE(ahead);
+  EXPECT_GT(ahead->box.u + ahead->box.width - (last.u + last.width), last.u - ahead->box.u + 2);
+}
+
+TEST_F(PartOfThePicture, IsTheWholeOneNowAndThen) {
+  show({somebody_}, 0.0);
+  for (int i = 1; i <= 5; ++i) {
+    ASSERT_TRUE(region({somebody_}, i * kFrame_s)) << i;
+    show({somebody_}, i * kFrame_s, false);
+  }
+  EXPECT_FALSE(region({somebody_}, 6 * kFrame_s)) << "0.17 s have passed";
+  show({somebody_}, 6 * kFrame_s);
+  EXPECT_TRUE(region({somebody_}, 7 * kFrame_s));
+  EXPECT_FALSE(region({somebody_}, 100.0)) << "a jump of the clock";
+}
+
+TEST_F(PartOfThePicture, IsTheWholeOneWhereItIsNotSureThatNobodyElseIsThere) {
+  EXPECT_FALSE(region({}, 0.0));
+  show({}, 0.0);
+  EXPECT_FALSE(region({}, kFrame_s)) << "nobody is followed";
+  show({somebody_}, kFrame_s);
+  Actor other = somebody_;
+  other.trunk.x() = 1.2F;
+  EXPECT_TRUE(region({somebody_}, 2 * kFrame_s));
+  EXPECT_FALSE(region({somebody_, other}, 2 * kFrame_s)) << "somebody came in";
+  Actor unseen = somebody_;
+  unseen.found = false;
+  show({unseen}, 2 * kFrame_s);
+  EXPECT_FALSE(region({somebody_}, 3 * kFrame_s)) << "somebody was not found";
+  Actor doubtful = somebody_;
+  doubtful.score = 0.85F;
+  show({doubtful}, 3 * kFrame_s);
+  EXPECT_FALSE(region({somebody_}, 4 * kFrame_s));
+  Actor far_left = somebody_, far_right = somebody_;
+  far_left.trunk.x() = -1.2F, far_right.trunk.x() = 1.2F;
+  show({far_left, far_right}, 4 * kFrame_s);
+  EXPECT_FALSE(region({far_left, far_right}, 5 * kFrame_s)) << "there is nothing to gain";
+}
+
+TEST_F(PartOfThePicture, IsNeverAskedForWithoutATime) {
+  EXPECT_TRUE(tracker_.knows_regions());
+  TrackOptions options;
+  options.whole_s = 0.F;
+  tracker_ = PeopleTracker(paper_body(), options, hue());
+  EXPECT_FALSE(tracker_.knows_regions());
+  show({somebody_}, 0.0);
+  EXPECT_FALSE(region({somebody_}, kFrame_s));
 }
 
 /// Returns the memory that this process has in use, if the system tells.
@@ -809,7 +900,7 @@ TEST(TrackPeople, HoursOfBadInputNeedNoMoreMemory) {
   for (long i = 0; i < updates; ++i) {
     const Frame& frame = day.next(people);
     ASSERT_LE(tracker.expect(frame).people.size(), 16U);
-    const TrackedFrame tracked = tracker.update(frame, std::move(people));
+    const TrackedFrame tracked = tracker.update(frame, {std::move(people)});
     ASSERT_TRUE(std::isfinite(tracked.time_s));
     for (const TrackedPerson& person : tracked.people) {
       ASSERT_TRUE(person.position.allFinite());
@@ -817,7 +908,7 @@ TEST(TrackPeople, HoursOfBadInputNeedNoMoreMemory) {
     }
     most = std::max(most, tracked.people.size());
     if (i % 300 == 0) {  // fits take a thousand times as long
-      fitting.update(i / 300 % 8 < 5 ? room : empty, i / 300 % 8 < 5 ? std::vector{somebody} : std::vector<Person>());
+      fitting.update(i / 300 % 8 < 5 ? room : empty, {i / 300 % 8 < 5 ? std::vector{somebody} : std::vector<Person>()});
     }
     if (i == updates / 4) warm_mib = resident_mib();
   }

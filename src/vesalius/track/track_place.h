@@ -23,6 +23,8 @@ class TrackPlace {
   TrackPlace(const Frame& frame, const Mask& mask, const Box& box);
 
   bool empty() const { return mask_.empty(); }
+  /// Returns the smallest box around the person, empty if the place is.
+  const Box& box() const { return box_; }
   /// Returns whether the person reached to the border of the view, where people leave it.
   bool at_border() const { return at_border_; }
 
