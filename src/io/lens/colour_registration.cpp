@@ -37,7 +37,7 @@ void expect_camera_size(const Camera& camera, const Image<T>& picture, const cha
                           picture.height(), camera.width, camera.height));
 }
 
-void lower(std::uint16_t& value, std::uint16_t to) {
+void keep_nearer(std::uint16_t& value, std::uint16_t to) {
   const std::atomic_ref<std::uint16_t> shared(value);
   std::uint16_t now = shared.load(std::memory_order_relaxed);
   while (to < now && !shared.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
@@ -85,7 +85,7 @@ ColourImage ColourRegistration::operator()(const DepthImage& depth, const Colour
         const int cu = pixel_of(landing.u), cv = pixel_of(landing.v);
         if (!colour.contains(cu, cv)) continue;
         landings(u, v) = landing;
-        lower(nearest(cu >> cell_bits_, cv >> cell_bits_), landing.z_mm);
+        keep_nearer(nearest(cu >> cell_bits_, cv >> cell_bits_), landing.z_mm);
       }
     }
   });

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kBetween = " \t\r,";
 
 /// Returns the four words of a line; nothing of other lines.
-std::optional<std::array<std::string_view, 4>> words_of(std::string_view line) {
+std::optional<std::array<std::string_view, 4>> four_words(std::string_view line) {
   std::array<std::string_view, 4> words;
   for (std::string_view& word : words) {
     word = line.substr(0, line.find_first_of(kBetween));
@@ -29,8 +29,8 @@ std::optional<std::array<std::string_view, 4>> words_of(std::string_view line) {
 }
 
 /// Returns the four numbers of a line; nothing of other lines.
-std::optional<std::array<double, 4>> numbers_of(std::string_view line) {
-  const auto words = words_of(line);
+std::optional<std::array<double, 4>> four_numbers(std::string_view line) {
+  const auto words = four_words(line);
   if (!words) return std::nullopt;
   std::array<double, 4> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -45,7 +45,7 @@ bool is_name(std::string_view word) { return is_letter(word.front()); }
 
 /// Returns whether a line has four names: "time_s,x,y,z".
 bool has_names(std::string_view line) {
-  const auto words = words_of(line);
+  const auto words = four_words(line);
   return words && std::ranges::all_of(*words, is_name);
 }
 
@@ -55,7 +55,7 @@ std::vector<TimedAcceleration> parse_accelerations(std::string_view text, const 
   std::vector<TimedAcceleration> measured;
   bool is_first = true;
   each_line(without_byte_order(text), kBetween, [&](std::string_view line, int number) {
-    if (const auto numbers = numbers_of(line)) {
+    if (const auto numbers = four_numbers(line)) {
       const auto& values = *numbers;
       measured.push_back({clock_seconds(values[0]), {values[1], values[2], values[3]}});
     } else if (!is_first || !has_names(line)) {

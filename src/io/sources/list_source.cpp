@@ -180,7 +180,7 @@ bool counts_frames(const std::vector<TumEntry>& entries) {
 }
 
 /// Times beyond those of 64 bits count as the ends.
-std::int64_t nanoseconds(double time_s) { return std::llround(std::clamp(time_s, -9e9, 9e9) * 1e9); }
+std::int64_t clamped_nanoseconds(double time_s) { return std::llround(std::clamp(time_s, -9e9, 9e9) * 1e9); }
 
 /// Both lists merged by time as a linked list. When a pair is taken out, the entries beside it become neighbours; so
 /// the closest remaining pair is always a pair of neighbours.
@@ -342,9 +342,9 @@ void add_up(FrameList& list, const std::vector<std::string>& folders) {
   UpHistory history;
   auto next = measured.begin();
   for (FrameFiles& frame : list.frames) {
-    const std::int64_t time_ns = nanoseconds(*frame.time_s);
-    for (; next != measured.end() && nanoseconds(next->time_s) <= time_ns; ++next)
-      history.add(nanoseconds(next->time_s), next->m_s2);
+    const std::int64_t time_ns = clamped_nanoseconds(*frame.time_s);
+    for (; next != measured.end() && clamped_nanoseconds(next->time_s) <= time_ns; ++next)
+      history.add(clamped_nanoseconds(next->time_s), next->m_s2);
     frame.up = history.up_at(time_ns);
   }
 }

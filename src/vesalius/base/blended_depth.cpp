@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBlendRows = 16;
 constexpr int kWidest = 3;  ///< pixels of a ramp: as far as cubic interpolation reaches, and a pixel more
-constexpr std::array<std::array<int, 2>, 8> kSides{
+constexpr std::array<std::array<int, 2>, 8> kAround{
     {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 
 struct Pixel {
@@ -23,7 +23,7 @@ struct Pixel {
 
 /// Appends the readings around a hole that were blended with it.
 void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::vector<Pixel>& blended) {
-  for (const auto& [du, dv] : kSides) {
+  for (const auto& [du, dv] : kAround) {
     const Pixel beside{hole.u + du, hole.v + dv}, behind{hole.u + 2 * du, hole.v + 2 * dv};
     if (!depth.contains(behind.u, behind.v)) continue;
     const int near = depth(beside.u, beside.v), far = depth(behind.u, behind.v);
