@@ -224,6 +224,7 @@ struct PeopleTracker::State {
   TrackView view;
   TrackFloor floor;
   int last_id = 0;
+  double latest_s = 0.0;      ///< time of the frame before
   std::vector<Track> tracks;  ///< by id
   std::deque<Track> lost;     ///< the last one lost comes last
 };
@@ -535,7 +536,7 @@ std::optional<PictureRegion> PeopleTracker::region(const Frame& frame) const {
   Box box;
   for (const Track& track : s.tracks) {
     if (track.person.score < kSurelyFound) return std::nullopt;
-    const Box own = track.seen_s + step.passed_s < step.time_s ? Box{} : box_to_look_at(track, frame, step.passed_s);
+    const Box own = track.seen_s < s.latest_s ? Box{} : box_to_look_at(track, frame, step.passed_s);
     if (own.width == 0) return std::nullopt;
     box = around(box, own);
   }
@@ -563,6 +564,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, Detection found) {
   }
   s.floor.update(found.planes, frame.up, step.passed_s, guessed_up(frame));
   out.floor = s.floor.view();
+  s.latest_s = step.time_s;
   s.predict(frame, step.passed_s);
   const std::vector<int> sighting_of = s.follow(frame, sightings, step.time_s, out);
   s.fit_bodies(frame, sighting_of, out, sightings);
