@@ -11,6 +11,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   # Its bug 105651: it warns of std::string's own copying; what is left of it in 13 too.
   list(APPEND vesalius_options -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_BUILD_TYPE STREQUAL Release)
+  # A tenth of the time to compile files together is GCC's collecting of its own garbage; without, it takes a quarter more memory.
+  list(APPEND vesalius_options --param=ggc-min-heapsize=1048576)
+endif()
 if(VESALIUS_SANITIZE)
   list(APPEND vesalius_options -fsanitize=${VESALIUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
