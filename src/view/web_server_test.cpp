@@ -81,19 +81,30 @@ class Server {
 // Labels: threads
 TEST(WebServer, GoesOnWhileAnAnswerIsMade) {
   Server server;
-  std::vector<test::Got> got(2);
+  // One is made and one waits, whichever come first; who else asks is sent away.
+  std::vector<test::Got> got(4);
+  std::atomic<int> sent_away = 0;
   std::vector<std::jthread> asking;
-  for (test::Got& one : got) asking.emplace_back([&] { one = request(server.port(), "/slow"); });
+  for (test::Got& one : got) {
+    asking.emplace_back([&] {
+      one = request(server.port(), "/slow");
+      sent_away += one.status == 503 ? 1 : 0;
+    });
+  }
   server.until([&] { return server.making == 1; });
   EXPECT_EQ(request(server.port(), "/").status, 200);
   EXPECT_EQ(request(server.port(), "/slow", "evil.example").status, 403);
-  server.until([&] { return request(server.port(), "/slow").status == 503; });
+  server.until([&] { return sent_away == 2; });
   server.may_end = true;
   asking.clear();
+  int given = 0;
   for (const test::Got& one : got) {
+    if (one.status == 503) continue;
+    ++given;
     EXPECT_EQ(one.status, 200);
     EXPECT_EQ(one.body.size(), 1U << 20U);
   }
+  EXPECT_EQ(given, 2);
   server.fails = true;
   EXPECT_EQ(request(server.port(), "/slow").status, 500);
   EXPECT_EQ(request(server.port(), "/slow").body, "vesalius: no memory\n");
@@ -104,7 +115,14 @@ TEST(WebServer, EndsWhileAnswersAreMade) {
   std::optional<Server> server(std::in_place);
   const std::uint16_t port = server->port();
   std::vector<std::jthread> asking;
-  for (int i = 0; i < 2; ++i) asking.emplace_back([port] { request(port, "/slow"); });
+  for (int i = 0; i < 2; ++i) {
+    asking.emplace_back([port] {
+      try {
+        request(port, "/slow");
+      } catch (const std::exception&) {  // who comes too late finds nobody
+      }
+    });
+  }
   server->until([&] { return server->making == 1; });
   server->may_end = true;
   server.reset();
