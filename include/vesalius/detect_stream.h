@@ -50,11 +50,11 @@ int stream_frames(FrameSource& source, const Detector& detector, const StreamOpt
                   const std::function<bool(FoundFrame)>& take);
 
 /// As above, and follows the people over the frames: what `tracker` knows of them helps to find them, and
-/// FoundFrame::people has them with their ids. The tracker is asked and told
-/// frame by frame in the source's order; where every frame is looked at as a whole (TrackOptions::whole_s is 0), the
-/// pixels of the next are labelled meanwhile. A frame that fails leaves the tracker as it is. Ids are the same for any
-/// number of threads and any speed, but in real time, where frames are dropped. `tracker` must follow people of the
-/// detector's body and is used until this function returns.
+/// FoundFrame::people has them with their ids. The tracker is asked and told frame by frame in the source's order;
+/// where every frame is looked at as a whole (TrackOptions::whole_s is 0), the pixels of the next are labelled
+/// meanwhile. A frame that fails leaves the tracker as it is. Ids are the same for any number of threads and any speed,
+/// but in real time, where frames are dropped. `tracker` must follow people of the detector's body and is used until
+/// this function returns.
 int stream_frames(FrameSource& source, const Detector& detector, PeopleTracker& tracker, const StreamOptions& options,
                   const std::function<bool(FoundFrame)>& take);
 

@@ -45,10 +45,10 @@ class PeopleTracker {
   /// Returns what the frames before tell about the people of this one, which comes next.
   Prior expect(const Frame& frame) const;
 
-  /// Returns where all people of this frame, which comes next, will be: a third larger than about those of the frame
-  /// before, where they have gone since. Nothing if the whole picture is to be looked at: where nobody is followed, or
-  /// somebody was not found, every TrackOptions::whole_s, and where anything else has changed since then, as it does
-  /// with a camera that moves. So whoever comes in is found that much later at most.
+  /// Returns a part of this frame, which comes next, that has all people: the box about those of the frame before, a
+  /// third larger, where they have gone since. Nothing if the whole picture is to be looked at: where nobody is
+  /// followed, or somebody was not found, every TrackOptions::whole_s, and where anything else has changed since then,
+  /// as it does with a camera that moves. So whoever comes in is found that much later at most.
   std::optional<PictureRegion> region(const Frame& frame) const;
   /// Returns whether `region` may return one.
   bool knows_regions() const;

@@ -152,20 +152,18 @@ bool rests(const Track& track, const Frame& frame) {
 Box box_to_look_at(const Track& track, const Frame& frame, double passed_s) {
   TrackMotion motion = track.motion;
   motion.predict(passed_s);
-  const Eigen::Vector3f &from = track.place_position, &to = motion.position();
   const Box& box = track.place.box();
   const Camera& camera = frame.camera;
-  if (box.width == 0 || !(from.z() > 0.F) || !(to.z() > 0.F)) return {};
-  const Eigen::Vector2f moved = camera.pixel(to) - camera.pixel(from);
-  if (!(std::abs(moved.x()) < float(camera.width)) || !(std::abs(moved.y()) < float(camera.height))) return {};
+  const std::optional<Eigen::Vector2i> moved = moved_pixels(camera, track.place_position, motion.position());
+  if (box.width == 0 || !moved) return {};
   const auto room = [&](int side) {
     return std::max(camera.width / kLeastRoom, int(kRegionLarger / 2.0 * double(side)));
   };
   const int right = room(box.width), below = room(box.height);
-  const int du = int(std::lround(moved.x())), dv = int(std::lround(moved.y()));
-  const int u = std::max(0, box.u + du - right), v = std::max(0, box.v + dv - below);
-  const int end_u = std::min(camera.width, box.u + du + box.width + right);
-  const int end_v = std::min(camera.height, box.v + dv + box.height + below);
+  const int left_u = box.u + moved->x(), top_v = box.v + moved->y();
+  const int u = std::max(0, left_u - right), v = std::max(0, top_v - below);
+  const int end_u = std::min(camera.width, left_u + box.width + right);
+  const int end_v = std::min(camera.height, top_v + box.height + below);
   if (end_u <= u || end_v <= v) return {};
   return {u, v, end_u - u, end_v - v};
 }

@@ -84,16 +84,14 @@ float TrackPlace::unchanged(const Frame& frame) const {
 
 Mask TrackPlace::expected(const Frame& frame, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
   if (empty() || frame.depth.width() != width_ || frame.depth.height() != height_) return {};
-  if (!(from.z() > 0.F) || !(to.z() > 0.F)) return {};
-  const Eigen::Vector2f moved = frame.camera.pixel(to) - frame.camera.pixel(from);
-  if (!(std::abs(moved.x()) < float(width_)) || !(std::abs(moved.y()) < float(height_))) return {};
-  const int du = int(std::lround(moved.x())), dv = int(std::lround(moved.y()));
+  const std::optional<Eigen::Vector2i> moved = moved_pixels(frame.camera, from, to);
+  if (!moved) return {};
   const int dz_mm = int(std::lround(1e3F * (to.z() - from.z())));
   Mask out(width_, height_, 0);
   long left = 0;
   for (int v = 0; v < box_.height; ++v) {
     for (int u = 0; u < box_.width; ++u) {
-      const int to_u = box_.u + u + du, to_v = box_.v + v + dv;
+      const int to_u = box_.u + u + moved->x(), to_v = box_.v + v + moved->y();
       if (mask_(u, v) == 0 || !out.contains(to_u, to_v)) continue;
       const int now = frame.depth(to_u, to_v), then = depth_(u, v) + dz_mm;
       if (now == 0 || std::abs(now - then) > tolerance_mm(now)) continue;
@@ -103,6 +101,15 @@ Mask TrackPlace::expected(const Frame& frame, const Eigen::Vector3f& from, const
   }
   if (left < kLeastPixels || float(left) < kLeastShareLeft * float(pixels_)) return {};
   return out;
+}
+
+std::optional<Eigen::Vector2i> moved_pixels(const Camera& camera, const Eigen::Vector3f& from,
+                                            const Eigen::Vector3f& to) {
+  if (!(from.z() > 0.F) || !(to.z() > 0.F)) return std::nullopt;
+  const Eigen::Vector2f moved = camera.pixel(to) - camera.pixel(from);
+  if (!(std::abs(moved.x()) < float(camera.width)) || !(std::abs(moved.y()) < float(camera.height)))
+    return std::nullopt;
+  return Eigen::Vector2i(int(std::lround(moved.x())), int(std::lround(moved.y())));
 }
 
 std::optional<TrunkPlace> trunk_place(const Person& person, const Frame& frame, const BodyModel& body) {

@@ -47,6 +47,11 @@ class TrackPlace {
   bool at_border_ = false;
 };
 
+/// Returns by how many columns and rows a point that goes from `from` to `to` (metres, optical frame) moves in the
+/// picture; nothing if either is not before the camera, or it moves by more than the picture.
+std::optional<Eigen::Vector2i> moved_pixels(const Camera& camera, const Eigen::Vector3f& from,
+                                            const Eigen::Vector3f& to);
+
 /// Where the trunk of a person was measured.
 struct TrunkPlace {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres, optical frame
