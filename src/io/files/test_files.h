@@ -24,11 +24,13 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "vesalius_io_XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder: " + pattern);
-    path_ = pattern;
+    root_ = pattern;
+    path_ = root_ / "test/files";
+    std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() {
     std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    std::filesystem::remove_all(root_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -41,7 +43,8 @@ class TemporaryFolder {
   }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path root_;
+  std::filesystem::path path_;  // two folders deeper: calibrations are looked for above, and temporary files are everybody's
 };
 
 /// Writes `bytes` to a file and creates missing folders above it. Returns the path.
