@@ -17,7 +17,7 @@ void visit_options(const std::string& prefix, GridOptions& o, OptionVisitor& vis
   visitor.option(prefix + "step", o.step,
                  {"px", 0, 16,
                   "Look at every so many pixels of every so many rows and bring what is found back to all by their "
-                  "depth; 0: the least that leaves at most 250,000 pixels."});
+                  "depth; 0: the least that leaves at most 250,000 pixels, or more where the focal length is long."});
 }
 
 void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {

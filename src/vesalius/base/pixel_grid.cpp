@@ -1,5 +1,6 @@
 #include "vesalius/base/pixel_grid.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "vesalius/error.h"
@@ -11,6 +12,8 @@ int grid_step(const Camera& camera, const GridOptions& options) {
   const auto left = [&](long step) { return ((camera.width + step - 1) / step) * ((camera.height + step - 1) / step); };
   int step = 1;
   while (left(step) > kMostPixels) ++step;
+  const float focal = std::min(camera.fx, camera.fy);
+  while (left(step) > kEnoughPixels && focal >= kEnoughFocalPx * float(step + 1)) ++step;
   return step;
 }
 

@@ -17,13 +17,19 @@ namespace vesalius {
 /// and 848x480.
 inline constexpr long kMostPixels = 250'000;
 
+/// Of pictures that have more than so many, as few are looked at as leave so many pixels to a radian: at 3 m one of them is
+/// 1 cm wide. Decision 60 has what more and fewer bring.
+inline constexpr long kEnoughPixels = 100'000;
+inline constexpr float kEnoughFocalPx = 300.F;
+
 /// Columns and rows of the grid that labellers take at once: a network halves its picture five times.
 inline constexpr int kGridBlock = 32;
 
 /// Rows of a picture that a thread takes at once (parallel_ranges).
 inline constexpr int kRowGrain = 8;
 
-/// Returns the step for pictures of this camera, at least 1.
+/// Returns the step for pictures of this camera, at least 1: the option's, or else the least that leaves at most
+/// kMostPixels, or a larger one that leaves at least a focal length of kEnoughFocalPx.
 int grid_step(const Camera& camera, const GridOptions& options);
 
 /// Returns every `step`-th pixel of every `step`-th row, beginning with the first.

@@ -10,10 +10,12 @@
 namespace vesalius {
 namespace {
 
+int step_of(int width, int height, float focal, int wanted = 0) {
+  return grid_step({width, height, focal, focal * 1.01F, 0.F, 0.F}, {wanted});
+}
+
 TEST(GridStep, IsTheSmallestThatLeavesFewEnoughPixels) {
-  const auto step = [](int width, int height, int wanted = 0) {
-    return grid_step({width, height, 500.F, 500.F, 0.F, 0.F}, {wanted});
-  };
+  const auto step = [](int width, int height, int wanted = 0) { return step_of(width, height, 500.F, wanted); };
   EXPECT_EQ(step(320, 240), 1);
   EXPECT_EQ(step(512, 424), 1);
   EXPECT_EQ(step(500, 500), 1);
@@ -26,6 +28,18 @@ TEST(GridStep, IsTheSmallestThatLeavesFewEnoughPixels) {
   EXPECT_EQ(step(640, 480, 1), 1);
   EXPECT_EQ(step(320, 240, 3), 3);
   EXPECT_EQ(step(1, 1), 1);
+}
+
+TEST(GridStep, IsLargerWherePixelsOfALongFocalLengthAreEnough) {
+  EXPECT_EQ(step_of(1280, 720, 640.F), 2) << "a RealSense D455";
+  EXPECT_EQ(step_of(1280, 720, 899.F), 2);
+  EXPECT_EQ(step_of(1280, 720, 900.F), 3) << "a D415";
+  EXPECT_EQ(step_of(1280, 720, 1200.F), 4);
+  EXPECT_EQ(step_of(1280, 720, 9000.F), 4) << "no fewer than a hundred thousand ask for it";
+  EXPECT_EQ(step_of(640, 480, 1200.F), 2);
+  EXPECT_EQ(step_of(512, 424, 900.F), 2);
+  EXPECT_EQ(step_of(1920, 1080, 1060.F), 3);
+  EXPECT_EQ(step_of(1280, 720, 900.F, 1), 1);
 }
 
 TEST(EveryNth, KeepsThePointsOfPixels) {
