@@ -107,6 +107,7 @@ class DeviceLabeller::Workspace {
     batch_ = batch;
     classes_ = classes;
     has_turns_ = headings > 0;
+    turn_count_ = std::size_t{kSides} * headings;
     fit(depth_, batch.pixels());
     fit(units_, batch.count);
     fit(done_, batch.pixels());
@@ -115,7 +116,7 @@ class DeviceLabeller::Workspace {
     fit(asked_count_, 1);
     fit(leaves_, std::size_t{batch.pixels()} * forest_.trees());
     fit(sums_, std::size_t{batch.pixels()} * classes);
-    fit(turns_, std::size_t{batch.pixels()} * kSides * headings);
+    fit(turns_, std::size_t{batch.pixels()} * turn_count_);
     fit(states_, batch.pixels(BackgroundGate::kStep));
     host_units_.resize(batch.count);
   }
@@ -133,6 +134,8 @@ class DeviceLabeller::Workspace {
     stream_->copy_to_device(units_.data(), host_units_.data(), host_units_.size() * sizeof(OffsetUnits));
     stream_->clear(done_.data(), batch_.pixels());
     stream_->clear(sums_.data(), std::size_t{batch_.pixels()} * classes_ * sizeof(std::uint16_t));
+    // All are copied back, and those of pixels that the forest is not asked about would be another picture's.
+    if (has_turns_) stream_->clear(turns_.data(), std::size_t{batch_.pixels()} * turn_count_ * sizeof(std::uint16_t));
     has_settled_ = enough.has_value();
     if (has_settled_) {
       ask(BackgroundGate::kStep);
@@ -237,6 +240,7 @@ class DeviceLabeller::Workspace {
   DeviceLabellerOptions options_;
   Batch batch_;
   int classes_ = 0;
+  std::size_t turn_count_ = 0;  ///< of a pixel
   bool has_turns_ = false, has_settled_ = false;
   std::vector<OffsetUnits> host_units_;
   DeviceArray<std::uint16_t> depth_;

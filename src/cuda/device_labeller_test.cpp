@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -226,6 +227,25 @@ TEST(DeviceLabeller, KeepsItsMemoryForTheNextPicture) {
   const std::size_t used = device->allocated_bytes();
   for (int i = 0; i < 3; ++i) labeller.label(depth_frame(random_scene(random, 40, 39), camera_of(depth)));
   EXPECT_EQ(device->allocated_bytes(), used);
+}
+
+TEST(DeviceLabeller, CopiesNothingBackThatNobodyWrote) {
+  Random random(7);
+  const Forest forest = random_forest(random, {LeafKind::headings, true, 3, 127, 800});
+  const DeviceLabeller device(forest, simulated());
+  DepthImage depth = random_scene(random, 40, 30);
+  for (int v = 10; v < 20; ++v) std::fill_n(depth.row(v), depth.width(), std::uint16_t{0});
+  Posteriors found;
+  for (int again = 0; again < 2; ++again) {
+    device.label_into(depth_frame(depth, camera_of(depth)), kNoGate, found);
+    ASSERT_GT(found.turn_count(), 0U);
+    for (int v = 10; v < 20; ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        ASSERT_EQ(std::count(found.turns_at(u, v), found.turns_at(u, v) + found.turn_count(), 0), found.turn_count());
+        ASSERT_EQ(std::count(found.at(u, v), found.at(u, v) + found.classes, 0), found.classes);
+      }
+    }
+  }
 }
 
 TEST(DeviceLabeller, SaysWhenADeviceIsTooSmallOrLost) {
