@@ -44,7 +44,8 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path root_;
-  std::filesystem::path path_;  // two folders deeper: calibrations are looked for above, and temporary files are everybody's
+  /// Two folders deeper: calibrations are looked for above, and temporary files are everybody's.
+  std::filesystem::path path_;
 };
 
 /// Writes `bytes` to a file and creates missing folders above it. Returns the path.

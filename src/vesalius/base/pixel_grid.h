@@ -17,8 +17,8 @@ namespace vesalius {
 /// and 848x480.
 inline constexpr long kMostPixels = 250'000;
 
-/// Of pictures that have more than so many, as few are looked at as leave so many pixels to a radian: at 3 m one of them is
-/// 1 cm wide. Decision 60 has what more and fewer bring.
+/// Of pictures that have more than so many, as few are looked at as leave so many pixels to a radian: at 3 m one of
+/// them is 1 cm wide. Decision 60 has what more and fewer bring.
 inline constexpr long kEnoughPixels = 100'000;
 inline constexpr float kEnoughFocalPx = 300.F;
 
