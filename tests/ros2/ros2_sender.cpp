@@ -98,9 +98,9 @@ int types(ros2::Node& node) {
     const auto from = node.subscribe("/from/" + name, type, {});
     const auto to = node.advertise("/to/" + name, type, {});
     std::string back;
-    const bool came = wait_for([&] {
+    const bool came = wait_for([&, &sent_message = message] {  // clang 14 captures no binding by itself
       // What was sent before both sides knew each other is lost.
-      to->publish(message);
+      to->publish(sent_message);
       node.wait(milliseconds(100));
       if (auto next = from->take()) back = *next;
       return !back.empty();

@@ -271,7 +271,7 @@ class MoveSamples : public testing::Test {
     Random random(3);
     for (std::int32_t& n : node_of_) n = static_cast<std::int32_t>(random.below(2));
     std::iota(expected_.begin(), expected_.end(), 0U);
-    std::ranges::stable_partition(expected_, [&](std::uint32_t s) { return node_of_[s] == 0; });
+    std::stable_partition(expected_.begin(), expected_.end(), [&](std::uint32_t s) { return node_of_[s] == 0; });
   }
 
   /// Returns whether a barrier that is left out shows in either order of threads.

@@ -336,7 +336,7 @@ TEST(ClipGenerator, LetsWhoFellGetUpAgain) {
     const std::string& now = frame.postures.at(0);
     if (now == "standing" || now == "lying") postures.push_back(now);
   }
-  postures.erase(std::ranges::unique(postures).begin(), postures.end());
+  postures.erase(std::unique(postures.begin(), postures.end()), postures.end());
   EXPECT_THAT(postures, testing::ElementsAre("standing", "lying", "standing"));
   EXPECT_LT(longest_step(frames), 0.42F) << "8.4 m/s";
 }
