@@ -215,6 +215,8 @@ yarn.nodemanager.resource.cpu-vcores 2
 yarn.nodemanager.pmem-check-enabled false
 yarn.nodemanager.vmem-check-enabled false
 yarn.nodemanager.disk-health-checker.enable false
+# It looks once all the same, and by default a disk that is nine tenths full has no room for a job.
+yarn.nodemanager.disk-health-checker.max-disk-utilization-per-disk-percentage 100
 
 yarn.application.classpath $lib/*
 # As on most clusters: tasks' logs move to HDFS when their job is over, for \`yarn logs\`.
