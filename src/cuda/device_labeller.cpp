@@ -106,7 +106,6 @@ class DeviceLabeller::Workspace {
   void begin(const Batch& batch, int classes, int headings) {
     batch_ = batch;
     classes_ = classes;
-    has_turns_ = headings > 0;
     turn_count_ = std::size_t{kSides} * headings;
     fit(depth_, batch.pixels());
     fit(units_, batch.count);
@@ -135,7 +134,7 @@ class DeviceLabeller::Workspace {
     stream_->clear(done_.data(), batch_.pixels());
     stream_->clear(sums_.data(), std::size_t{batch_.pixels()} * classes_ * sizeof(std::uint16_t));
     // All are copied back, and those of pixels that the forest is not asked about would be another picture's.
-    if (has_turns_) stream_->clear(turns_.data(), std::size_t{batch_.pixels()} * turn_count_ * sizeof(std::uint16_t));
+    if (has_turns()) stream_->clear(turns_.data(), std::size_t{batch_.pixels()} * turn_count_ * sizeof(std::uint16_t));
     has_settled_ = enough.has_value();
     if (has_settled_) {
       ask(BackgroundGate::kStep);
@@ -174,7 +173,7 @@ class DeviceLabeller::Workspace {
 
   void fetch_posteriors(Posteriors& out) {
     stream_->copy_to_host(out.sums.data(), sums_.data(), out.sums.size() * sizeof(out.sums[0]));
-    if (has_turns_) stream_->copy_to_host(out.turns.data(), turns_.data(), out.turns.size() * sizeof(out.turns[0]));
+    if (has_turns()) stream_->copy_to_host(out.turns.data(), turns_.data(), out.turns.size() * sizeof(out.turns[0]));
     if (has_settled_) stream_->copy_to_host(out.settled.data(), settled_.data(), out.settled.size());
   }
   void fetch_means(Posteriors& out) {
@@ -198,6 +197,7 @@ class DeviceLabeller::Workspace {
     array.fit(device_, count);
   }
 
+  bool has_turns() const { return turn_count_ > 0; }
   Pictures pictures() const { return {depth_.data(), batch_.width, batch_.height, batch_.count, batch_.width}; }
   const std::uint8_t* settled() const { return has_settled_ ? settled_.data() : nullptr; }
 
@@ -228,7 +228,7 @@ class DeviceLabeller::Workspace {
     forest_.describe(read);
     read.classes = classes_;
     read.sums = sums_.data();
-    read.turns = has_turns_ ? turns_.data() : nullptr;
+    read.turns = has_turns() ? turns_.data() : nullptr;
     const unsigned pixels =
         pixels_in_block(options_.threads, kLogitLanes, static_cast<unsigned>(read.places), kSharedLogits);
     read.pixels_in_block = int(pixels);
@@ -241,7 +241,7 @@ class DeviceLabeller::Workspace {
   Batch batch_;
   int classes_ = 0;
   std::size_t turn_count_ = 0;  ///< of a pixel
-  bool has_turns_ = false, has_settled_ = false;
+  bool has_settled_ = false;
   std::vector<OffsetUnits> host_units_;
   DeviceArray<std::uint16_t> depth_;
   DeviceArray<OffsetUnits> units_;
