@@ -152,7 +152,9 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     EXPECT_THAT(run.err, HasSubstr(reason));
   };
-  refused("synth", 2, "expected one of --count and --preview");
+  refused("synth", 2, "expected one of --count, --preview and --like");
+  refused("synth --count 1 --like nowhere --out x", 2, "expected one of --count, --preview and --like");
+  refused("synth --like nowhere", 1, "nowhere");
   refused(synth("--count 3"), 2, "--out");
   refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");
   refused(synth("--count 3 --mounting roof --out " + path("x")), 2, "ceiling");

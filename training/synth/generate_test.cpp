@@ -81,12 +81,38 @@ TEST(Generate, FiltersTheGivenShareOfPictures) {
   EXPECT_LE(changed, 18);
 }
 
+TEST(Generate, SeesPointsOfTheTruthWhereAWrongFocalLengthHasThem) {
+  Recipe recipe = small_recipe();
+  recipe.sensor.noise = false;
+  recipe.sensor.variety.focal_error = 0.2F;
+  const Generator wrong(recipe, {}, paper_body(), 7);
+  int seen = 0, own = 0;
+  for (std::uint64_t i = 0; i < 24; ++i) {
+    const LabelledFrame frame = wrong.frame(i);
+    const Camera& camera = frame.frame.camera;
+    EXPECT_EQ(camera, sensor_of(recipe.sensor).camera);
+    for (const std::vector<Eigen::Vector3f>& parts : frame.parts) {
+      for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Eigen::Vector3f& p = parts[part];
+        if (p.z() <= 0.F) continue;
+        const Eigen::Vector2f pixel = camera.pixel(p);
+        const int u = int(std::lround(pixel.x())), v = int(std::lround(pixel.y()));
+        if (!frame.labels.contains(u, v)) continue;
+        ++seen;
+        own += frame.labels(u, v) == part ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(seen, 300);
+  EXPECT_GT(own, seen * 2) << own << " of " << seen;
+}
+
 TEST(Generate, MakesStereoErrorsLargerUpToTheGivenFactor) {
   Recipe recipe = small_recipe();
   recipe.sensor.preset = "d435";
   recipe.sensor.height = 80;
   const auto errors_mm = [&](float matching_max) {
-    recipe.sensor.matching_max = matching_max;
+    recipe.sensor.variety.matching_max = matching_max;
     const Generator noisy(recipe, {}, paper_body(), 7);
     std::vector<double> mean;
     for (std::uint64_t i = 0; i < 8; ++i) {

@@ -7,7 +7,10 @@
 #include "synth/body/poser.h"
 #include "synth/recipe.h"
 #include "synth/sensor/render.h"
+#include "synth/sensor/resample_depth.h"
 #include "synth/sensor/sensor_noise.h"
+#include "synth/sensor/sensor_variety.h"
+#include "synth/sensor/stray_light.h"
 
 namespace vesalius::synth {
 namespace {
@@ -62,6 +65,22 @@ void add_truth(const BuiltScene& built, LabelledFrame& out) {
   }
 }
 
+/// Returns the view of a camera whose focal length is not the one that is stated.
+View seen_with(float true_focal_share, View view) {
+  view.camera.fx *= true_focal_share;
+  view.camera.fy *= true_focal_share;
+  return view;
+}
+
+/// Moves the points of the truth to where the stated focal length has them.
+void see_as_stated(float true_focal_share, LabelledFrame& out) {
+  for (auto* people : {&out.parts, &out.joints}) {
+    for (std::vector<Eigen::Vector3f>& points : *people) {
+      for (Eigen::Vector3f& p : points) p.head<2>() *= true_focal_share;
+    }
+  }
+}
+
 }  // namespace
 
 struct Photographer::State {
@@ -74,13 +93,9 @@ struct Photographer::State {
       : recipe(the_recipe), seed(the_seed), sensor(sensor_of(the_recipe.sensor)) {}
 
   /// Returns the sensor with what is drawn anew for every camera.
-  Sensor sensor_for(const PictureStreams& streams) const {
-    Sensor drawn = sensor;
-    if (recipe.sensor.matching_max > 1.F) {
-      const double share = random_for(seed, Purpose::matching, streams.camera).uniform();
-      drawn.matching_px *= float(std::pow(recipe.sensor.matching_max, share));
-    }
-    if (streams.is_clip) settle_border(drawn, random_for(seed, Purpose::noise, streams.camera));
+  VariedSensor sensor_for(const PictureStreams& streams) const {
+    VariedSensor drawn = draw_sensor(recipe.sensor.variety, sensor, random_for(seed, Purpose::camera, streams.camera));
+    if (streams.is_clip) settle_border(drawn.sensor, random_for(seed, Purpose::noise, streams.camera));
     return drawn;
   }
 
@@ -110,15 +125,18 @@ LabelledFrame Photographer::take(const BuiltScene& built, const PictureStreams& 
   RenderOptions options;
   options.colour = s.recipe.sensor.colour;
   options.projector = projector_of(s.sensor);
-  Rendering seen =
-      s.renderers.with([&](Renderer& renderer) { return renderer.render(built.scene, built.view, options); });
+  const VariedSensor sensor = s.sensor_for(streams);
+  const View view = seen_with(sensor.true_focal_share, built.view);
+  Rendering seen = s.renderers.with([&](Renderer& renderer) { return renderer.render(built.scene, view, options); });
 
   LabelledFrame result;
+  if (sensor.sensor.kind == SensorKind::time_of_flight) add_stray_light(sensor.stray_light, seen);
   result.frame.name = std::move(name);
   result.frame.camera = s.sensor.camera;
   Image<std::uint32_t> source;
-  result.frame.depth = sense(seen, s.sensor_for(streams), random_for(s.seed, Purpose::noise, streams.frame), &source);
+  result.frame.depth = sense(seen, sensor.sensor, random_for(s.seed, Purpose::noise, streams.frame), &source);
   s.filter(streams, result.frame.depth, source);
+  apply(sensor.resampling, result.frame.depth, &source);
   result.labels = as_read(seen.labels, source);
   result.person = as_read(seen.person, source);
   const bool cut = random_for(s.seed, Purpose::cut_out, streams.camera).uniform() < s.recipe.people.cut_out;
@@ -126,6 +144,7 @@ LabelledFrame Photographer::take(const BuiltScene& built, const PictureStreams& 
   result.frame.colour = std::move(seen.colour);
   if (s.recipe.sensor.noise && !result.frame.colour.empty()) s.add_noise(streams, result.frame.colour);
   add_truth(built, result);
+  see_as_stated(sensor.true_focal_share, result);
   return result;
 }
 

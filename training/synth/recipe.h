@@ -12,6 +12,7 @@
 #include "synth/scene/build_scene.h"
 #include "synth/sensor/depth_filter.h"
 #include "synth/sensor/sensor.h"
+#include "synth/sensor/sensor_variety.h"
 #include "vesalius/base/random.h"
 
 namespace vesalius::synth {
@@ -46,7 +47,7 @@ struct SensorOptions {
   float fx = 0.F, fy = 0.F, cx = -1.F, cy = -1.F;  ///< pixels at that size; fx 0 and cx, cy < 0 take the preset's
   bool noise = true;
   bool colour = true;
-  float matching_max = 1.F;   ///< a stereo camera's matching errors grow by up to this factor, drawn for each frame
+  SensorVariety variety;      ///< its options have no prefix of their own
   DepthFilterOptions filter;  ///< applied with and without noise
 };
 
@@ -90,7 +91,7 @@ Sensor sensor_of(const SensorOptions& options);
 
 /// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a change of one leaves the
 /// others unchanged.
-enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter, matching };
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter, camera };
 inline constexpr std::uint64_t kPurposes = 8;
 
 inline Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {

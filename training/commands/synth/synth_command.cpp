@@ -9,6 +9,7 @@
 #include "commands/cluster/cluster_flags.h"
 #include "commands/synth/contact_sheet.h"
 #include "commands/synth/frame_maker.h"
+#include "commands/synth/imitate_sensor.h"
 #include "commands/synth/render_cluster.h"
 #include "console/interrupts.h"
 #include "console/option_flags.h"
@@ -35,7 +36,7 @@ constexpr int kPreviewColumns = 3;
 struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
 
-  std::string recipe, sensor, camera, body, assets, motions, out, format = "shards";
+  std::string recipe, sensor, camera, body, assets, motions, like, out, format = "shards";
   OptionFlags<synth::Recipe> recipe_flags;
   ClipRequest clip;
   ClusterFlags cluster;
@@ -100,8 +101,23 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
   if (!arguments.quiet) say(path + ": " + counted(std::ssize(frames), "frame"));
 }
 
+/// Proposes the options of a sensor whose pictures are like those of a source, on standard output or in a file.
+void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
+  constexpr int kMostFrames = 100, kRooms = 40, kBodies = 6;
+  const MeasuredCamera real = measure_source(arguments.like, kMostFrames);
+  recipe.body.kind = "builtin";  // what people look like hardly matters here
+  recipe.body.count = kBodies;
+  recipe.pose.captured = 0.F;
+  const Imitation imitation = imitate(real, arguments.sensor, recipe, kRooms, arguments.seed, !arguments.quiet);
+  TextSink sink(arguments.out.empty() ? "-" : arguments.out);
+  sink.line(imitation_toml(arguments.like, real, imitation));
+  sink.finish();
+  if (!arguments.out.empty() && !arguments.quiet) say(arguments.out + ": a sensor, for --recipe");
+}
+
 void check(const Arguments& arguments) {
-  if ((arguments.count > 0) == (arguments.preview > 0)) throw UsageError("expected one of --count and --preview");
+  const int asked = (arguments.count > 0) + (arguments.preview > 0) + !arguments.like.empty();
+  if (asked != 1) throw UsageError("expected one of --count, --preview and --like");
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
@@ -130,6 +146,10 @@ void run(const Arguments& arguments) {
                    .sensor = arguments.sensor,
                    .camera = arguments.camera,
                    .change = [&](synth::Recipe& asked) { arguments.recipe_flags.apply(asked); }});
+  if (!arguments.like.empty()) {
+    watch_interrupts();
+    return propose_sensor(arguments, recipe);
+  }
   const BodyModel body = body_of(arguments);
   const LoadedAssets loaded = load_assets(
       recipe,
@@ -165,9 +185,17 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(1, kMaxPreview))
       ->group(group);
   command
+      .add_option(
+          "--like", arguments.like,
+          "Instead of a dataset, a recipe of the sensor whose pictures are most like those of this recording, "
+          "folder or camera, with the figures of both; labels are not needed. --preset says which camera it is, if "
+          "you know")
+      ->type_name("SOURCE")
+      ->group(group);
+  command
       .add_option("--out", arguments.out,
                   "Folder for the frames, created if missing; an interrupted run continues. With --preview the "
-                  "picture (default: preview.png)")
+                  "picture (default: preview.png), with --like the recipe (default: printed)")
       ->type_name("PATH")
       ->group(group);
   command.add_option("--format", arguments.format, "shards: compact, for training; folder: PNG and JSON")
@@ -250,6 +278,7 @@ Examples:
   vesalius synth --preview 24 --out look.png
   vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
   vesalius synth --clip 5 --preview 9 --out clip.png
+  vesalius synth --like my_recording/ --out like.toml
   vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
   command->callback([arguments, command] {
     if (command->get_subcommands().empty()) run(*arguments);
