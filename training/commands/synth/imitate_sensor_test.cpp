@@ -75,7 +75,8 @@ TEST(ImitateSensor, FindsWhatDriversAndRecordersDidToDepth) {
 
 TEST(ImitateSensor, SaysWhatItCannotMeasure) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT([&] { (void)measure_source(folder.path() + "/nothing", 10); }, ThrowsMessage<Error>(HasSubstr("nothing")));
+  EXPECT_THAT([&] { (void)measure_source(folder.path() + "/nothing", 10); },
+              ThrowsMessage<Error>(HasSubstr("nothing")));
   const MeasuredCamera real = measure_rendered(small_sensor("d435"), 2);
   EXPECT_THAT([&] { (void)imitate(real, "d436", small_rooms(), 2, 1, false); },
               ThrowsMessage<UsageError>(HasSubstr("d435")));
