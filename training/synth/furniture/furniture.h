@@ -18,6 +18,9 @@ struct Furniture {
 /// Moves a piece with its mesh and solids.
 void move(Furniture& piece, const Eigen::Isometry3f& motion);
 
+/// Adds a piece to another in whose frame it is, with its solids.
+void join(Furniture& piece, const Furniture& other);
+
 /// Returns a motion that turns by `yaw_rad` about y (positive is counter-clockwise when seen from above) and then moves
 /// to (x, height, z).
 Eigen::Isometry3f standing_at(float x_m, float height_m, float z_m, float yaw_rad);
@@ -28,6 +31,9 @@ class FurnitureBuilder {
   explicit FurnitureBuilder(Random& random) : random_(random) {}
 
   std::uint8_t stuff(Stuff kind) { return add_material(piece.mesh, sample_material(kind, random_)); }
+
+  /// Adds a look that is black with a probability: then it sends back next to no infrared light.
+  std::uint8_t perhaps_black(Stuff kind, double probability);
 
   /// Adds an upright box that is solid.
   void box(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::uint8_t material) {
@@ -51,6 +57,17 @@ class FurnitureBuilder {
     solid(from.cwiseMin(to) - Eigen::Vector3f(reach, 0.F, reach),
           from.cwiseMax(to) + Eigen::Vector3f(reach, 0.F, reach));
   }
+  /// Adds a round rod that is solid.
+  void rod(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius, std::uint8_t material);
+  /// Adds a round rod that is not solid, as it is thin, limp, or beside something solid.
+  void thin(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius, std::uint8_t material) {
+    add_cone(piece.mesh, from, to, radius, radius, material, 6);
+  }
+  /// Adds a wheel that turns about an axis, with a rim and spokes, or a disc. It is solid.
+  void wheel(const Eigen::Vector3f& centre, const Eigen::Vector3f& axis, float radius, float width, bool spokes,
+             std::uint8_t material);
+  /// Adds feet on castors about the origin that meet at a hub. They are solid.
+  void star(int feet, float reach, float hub_m, std::uint8_t material);
   /// Adds four legs under a board whose corners are at +-x and z_low, z_high.
   void legs(float x, float z_low, float z_high, float height, float thickness, std::uint8_t material) {
     for (const float z : {z_low, z_high - thickness}) {

@@ -11,38 +11,14 @@ using Eigen::AngleAxisf;
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-/// Returns the frame of a back that stands on the seat's back edge and leans backwards from there.
-Isometry3f back_pose(const SeatShape& shape, float thickness, float foot) {
-  Isometry3f pose = Isometry3f::Identity();
-  pose.linear() = AngleAxisf(-shape.lean_rad, Vector3f::UnitX()).toRotationMatrix();
-  const float length = shape.back_m - foot;
-  pose.translation() =
-      Vector3f(0.F, shape.height_m, 0.F) + pose.linear() * Vector3f(0.F, foot + 0.5F * length, -0.5F * thickness);
-  return pose;
-}
-
 /// Thickness of a board as a solid: boards are thin, but a body must not pass through.
 constexpr float kSeatSolid_m = 0.08F;
-
-void board(FurnitureBuilder& seat, const SeatShape& shape, float thickness, std::uint8_t material) {
-  const float half = shape.width_m / 2;
-  add_box(seat.piece.mesh, Vector3f(-half, shape.height_m - thickness, 0.F),
-          Vector3f(half, shape.height_m, shape.depth_m), material);
-  seat.solid({-half, shape.height_m - kSeatSolid_m, 0.F}, {half, shape.height_m, shape.depth_m});
-}
-
-void back(FurnitureBuilder& seat, const SeatShape& shape, float width, float foot, float thickness,
-          std::uint8_t material) {
-  add_box(seat.piece.mesh, back_pose(shape, thickness, foot), {width, shape.back_m - foot, thickness}, material);
-  const float solid = std::max(thickness, kSeatSolid_m);
-  seat.piece.solids.push_back({back_pose(shape, solid, foot), 0.5F * Vector3f(width, shape.back_m - foot, solid)});
-}
 
 void chair(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
   const std::uint8_t frame = seat.stuff(chance(0.6, random) ? Stuff::wood : Stuff::metal);
   const std::uint8_t cover = chance(0.5, random) ? frame : seat.stuff(Stuff::cloth);
   const float half = shape.width_m / 2, thick = between(0.02, 0.06, random), leg = between(0.025, 0.04, random);
-  board(seat, shape, thick, cover);
+  add_seat_board(seat, shape, thick, cover);
   if (chance(0.75, random)) {
     seat.legs(half, 0.F, shape.depth_m, shape.height_m - thick, leg, frame);
   } else {  // the star of an office chair
@@ -52,9 +28,9 @@ void chair(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
     seat.box({-0.03F, 0.02F, z - half * 0.9F}, {0.03F, 0.07F, z + half * 0.9F}, frame);
   }
   const float thickness = between(0.02, 0.06, random), foot = between(0.0, 0.5, random) * shape.back_m;
-  back(seat, shape, shape.width_m * 0.95F, foot, thickness, cover);
+  add_seat_back(seat, shape, shape.width_m * 0.95F, foot, thickness, cover);
   for (const float x : {-half * 0.8F, half * 0.8F}) {
-    Isometry3f pose = back_pose(shape, thickness, 0.F);
+    Isometry3f pose = seat_back_pose(shape, thickness, 0.F);
     pose.translation().x() = x;
     seat.box(pose, {leg, shape.back_m, 0.8F * thickness}, frame);
   }
@@ -63,7 +39,7 @@ void chair(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
 void stool(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
   const std::uint8_t wood = seat.stuff(chance(0.6, random) ? Stuff::wood : Stuff::plastic);
   const float half = shape.width_m / 2, z = shape.depth_m / 2, thick = between(0.03, 0.07, random);
-  board(seat, shape, thick, wood);
+  add_seat_board(seat, shape, thick, wood);
   if (chance(0.5, random)) {
     seat.legs(half * 0.9F, 0.05F * z, 1.95F * z, shape.height_m - thick, 0.03F, wood);
   } else {
@@ -85,7 +61,7 @@ void upholstered(const SeatShape& shape, FurnitureBuilder& seat, Random& random)
     const float x = -half + wide * float(i);
     seat.box({x + 0.003F, shape.height_m - 0.1F, 0.F}, {x + wide - 0.003F, shape.height_m, shape.depth_m}, cloth);
   }
-  seat.box(back_pose(shape, thickness, 0.F), {shape.width_m + 2.F * arm, shape.back_m, thickness}, cloth);
+  seat.box(seat_back_pose(shape, thickness, 0.F), {shape.width_m + 2.F * arm, shape.back_m, thickness}, cloth);
   const float arm_height = shape.height_m + between(0.12, 0.24, random);
   for (const float x : {-half - arm, half}) {
     seat.box({x, clear, back_end}, {x + arm, arm_height, shape.depth_m - 0.02F}, cloth);
@@ -190,6 +166,38 @@ class Cloth {
 };
 
 }  // namespace
+
+Isometry3f seat_back_pose(const SeatShape& shape, float thickness, float foot) {
+  Isometry3f pose = Isometry3f::Identity();
+  pose.linear() = AngleAxisf(-shape.lean_rad, Vector3f::UnitX()).toRotationMatrix();
+  const float length = shape.back_m - foot;
+  pose.translation() =
+      Vector3f(0.F, shape.height_m, 0.F) + pose.linear() * Vector3f(0.F, foot + 0.5F * length, -0.5F * thickness);
+  return pose;
+}
+
+void solid_seat_board(FurnitureBuilder& seat, const SeatShape& shape) {
+  const float half = shape.width_m / 2;
+  seat.solid({-half, shape.height_m - kSeatSolid_m, 0.F}, {half, shape.height_m, shape.depth_m});
+}
+
+void add_seat_board(FurnitureBuilder& seat, const SeatShape& shape, float thickness, std::uint8_t material) {
+  const float half = shape.width_m / 2;
+  add_box(seat.piece.mesh, Vector3f(-half, shape.height_m - thickness, 0.F),
+          Vector3f(half, shape.height_m, shape.depth_m), material);
+  solid_seat_board(seat, shape);
+}
+
+void solid_seat_back(FurnitureBuilder& seat, const SeatShape& shape, float width, float foot, float thickness) {
+  const float solid = std::max(thickness, kSeatSolid_m);
+  seat.piece.solids.push_back({seat_back_pose(shape, solid, foot), 0.5F * Vector3f(width, shape.back_m - foot, solid)});
+}
+
+void add_seat_back(FurnitureBuilder& seat, const SeatShape& shape, float width, float foot, float thickness,
+                   std::uint8_t material) {
+  add_box(seat.piece.mesh, seat_back_pose(shape, thickness, foot), {width, shape.back_m - foot, thickness}, material);
+  solid_seat_back(seat, shape, width, foot, thickness);
+}
 
 Furniture make_seat(const SeatShape& shape, Random& random) {
   FurnitureBuilder seat(random);

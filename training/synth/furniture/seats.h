@@ -23,6 +23,21 @@ struct SeatShape {
 /// Returns a seat. The foot of its back is at z = 0, its front edge at z = depth, and its middle at x = 0.
 Furniture make_seat(const SeatShape& shape, Random& random);
 
+// The parts of seats, in the same frame.
+
+/// Returns the frame of a back that stands on the seat's back edge, from `foot` up, and leans backwards from there. Its
+/// origin is the middle of the back.
+Eigen::Isometry3f seat_back_pose(const SeatShape& shape, float thickness, float foot);
+
+/// Makes the seat, or the back, solid where nothing but slats or bars is to be seen.
+void solid_seat_board(FurnitureBuilder& seat, const SeatShape& shape);
+void solid_seat_back(FurnitureBuilder& seat, const SeatShape& shape, float width, float foot, float thickness);
+
+/// Adds a flat seat, or a flat back, that is solid.
+void add_seat_board(FurnitureBuilder& seat, const SeatShape& shape, float thickness, std::uint8_t material);
+void add_seat_back(FurnitureBuilder& seat, const SeatShape& shape, float width, float foot, float thickness,
+                   std::uint8_t material);
+
 /// Returns a bed centred on the origin. Its surface is at the given height and its head end at +z.
 Furniture make_bed(float width_m, float length_m, float height_m, Random& random);
 
