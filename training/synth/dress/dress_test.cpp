@@ -195,12 +195,62 @@ TEST(Dress, KeepsAPersonWithABagOnTheFloor) {
   EXPECT_LT(feet, 0.12F);
 }
 
+/// Returns the bounds of what nobody owns on a posed body.
+Eigen::AlignedBox3f carried_bounds(const BodyMesh& mesh, const PosedBody& body) {
+  Eigen::AlignedBox3f bounds;
+  for (std::size_t t = 0; t < mesh.topology->triangles.size(); ++t) {
+    if (mesh.topology->part[t] != kBackground) continue;
+    for (const std::uint32_t v : mesh.topology->triangles[t]) bounds.extend(body.vertices[v]);
+  }
+  return bounds;
+}
+
+TEST(Dress, KeepsUmbrellasBroomsAndCanesUprightInTheHand) {
+  for (const Held held : {Held::umbrella, Held::broom, Held::cane}) {
+    Outfit outfit;
+    outfit.held = held;
+    outfit.left_hand = false;  // it is at the left then
+    const auto mesh = std::make_shared<const BodyMesh>(dressed(outfit));
+    EXPECT_THAT(added_parts(*mesh), testing::ElementsAre(kBackground));
+    const Poser poser(mesh, paper_body());
+    for (const float raise : {-1.3F, 0.F, 1.F}) {
+      Pose pose;
+      pose[Bone::l_upper_arm] = Eigen::Quaternionf(Eigen::AngleAxisf(raise, Vector3f::UnitZ()));
+      const PosedBody body = poser.pose(pose);
+      const Eigen::AlignedBox3f bounds = carried_bounds(*mesh, body);
+      const Vector3f hand = 0.5F * (body.joints[index(Bone::l_hand)] + body.ends[index(Bone::l_hand)]);
+      EXPECT_LT((bounds.center() - hand).head<1>().norm(), 0.15F) << raise;
+      EXPECT_LT(bounds.min().y(), hand.y() - 0.3F * mesh->stature_m);
+      EXPECT_GT(bounds.max().y(), hand.y() - 0.05F);
+      EXPECT_LT(bounds.sizes().x(), 0.45F);
+    }
+  }
+}
+
+TEST(Dress, LaysStrapsOnTheTrunkFromHipToShoulder) {
+  Outfit outfit;
+  outfit.bag = Bag::on_strap;
+  const BodyMesh mesh = dressed(outfit);
+  EXPECT_THAT(added_parts(mesh), testing::ElementsAre(kBackground));
+  float highest = 0.F;
+  for (std::size_t v = bare().vertices.size(); v < mesh.vertices.size(); ++v) {
+    const Vector3f& p = mesh.vertices[v];
+    highest = std::max(highest, p.y());
+    float nearest = 1.F;
+    for (const Vector3f& q : bare().vertices) nearest = std::min(nearest, (p - q).norm());
+    EXPECT_TRUE(p.y() < 0.65F * mesh.stature_m || nearest < 0.09F) << nearest << " from the skin at " << p.transpose();
+  }
+  EXPECT_GT(highest, 0.78F * mesh.stature_m);
+  EXPECT_LT(highest, 0.9F * mesh.stature_m);
+}
+
 TEST(Dress, FitsEverySampledOutfitToEverySampledBody) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     Random random(12, i);
     const BodyMesh body = make_body(builtin_bodies(), sample_factors({}, random), paper_body());
     OutfitOptions options;
     options.skirt = options.coat = options.hat = options.backpack = options.bag = options.held = 0.5F;
+    options.carried = 0.5F;
     const Outfit outfit = sample_outfit(options, random);
     const BodyMesh mesh = dress(body, outfit, paper_body(), random);
     EXPECT_EQ(mesh.topology->body_triangles, body.topology->triangles.size());

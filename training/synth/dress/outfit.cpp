@@ -85,6 +85,10 @@ void visit_options(const std::string& prefix, OutfitOptions& o, OptionVisitor& v
   visitor.option(prefix + "backpack", o.backpack, {"", 0, 1, "Share of people with a backpack."});
   visitor.option(prefix + "bag", o.bag, {"", 0, 1, "Share of people with a bag at the hip or in a hand."});
   visitor.option(prefix + "held", o.held, {"", 0, 1, "Share of people who hold a cup, phone, stick or box."});
+  visitor.option(prefix + "carried", o.carried,
+                 {"", 0, 1,
+                  "Share of people with a bag on a strap over the other shoulder, or with an umbrella, broom or cane "
+                  "upright in a hand, instead of those."});
   visitor.option(prefix + "max-cloth", o.max_cloth_m, {"m", 0, 0.05, "Thickest cloth over the skin."});
   visitor.option(prefix + "max-hair", o.max_hair_m, {"m", 0, 0.1, "Thickest hair over the skull."});
   visitor.option(prefix + "dark-cloth", o.dark_cloth,
@@ -123,6 +127,12 @@ Outfit sample_outfit(const OutfitOptions& options, Random& random) {
   if (chance(random, options.bag)) o.bag = chance(random, 0.6F) ? Bag::at_hip : Bag::in_hand;
   if (chance(random, options.held)) o.held = static_cast<Held>(1 + random.below(4));
   o.left_hand = chance(random, 0.5F);
+  if (options.carried > 0.F && chance(random, options.carried)) {  // off: draws no random numbers
+    constexpr std::array<Held, 3> kUpright = {Held::umbrella, Held::broom, Held::cane};
+    const bool strap = chance(random, 0.4F);
+    o.bag = strap ? Bag::on_strap : o.bag;
+    o.held = strap ? o.held : kUpright[random.below(kUpright.size())];
+  }
   return o;
 }
 

@@ -23,6 +23,7 @@ struct OutfitOptions {
   float backpack = 0.08F;
   float bag = 0.1F;           ///< a bag at the hip or in a hand
   float held = 0.15F;         ///< a cup, phone, stick or box in a hand
+  float carried = 0.F;        ///< a bag on a strap, or an umbrella, a broom or a cane that hangs from a hand, instead
   float max_cloth_m = 0.02F;  ///< largest thickness of cloth over the skin
   float max_hair_m = 0.05F;   ///< largest thickness of hair over the skull
   float dark_cloth = 0.2F;    ///< cloth that reflects almost no infrared light: leather, many blacks
@@ -32,8 +33,8 @@ void visit_options(const std::string& prefix, OutfitOptions& options, OptionVisi
 
 enum class Hair : std::uint8_t { bald, shorn, long_hair };
 enum class Hat : std::uint8_t { none, beanie, cap, brimmed };
-enum class Bag : std::uint8_t { none, at_hip, in_hand };
-enum class Held : std::uint8_t { none, cup, phone, stick, box };
+enum class Bag : std::uint8_t { none, at_hip, in_hand, on_strap };
+enum class Held : std::uint8_t { none, cup, phone, stick, box, umbrella, broom, cane };
 
 /// The clothes and carried things of one person. Lengths are in metres.
 struct Outfit {

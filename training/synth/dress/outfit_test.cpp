@@ -38,6 +38,20 @@ TEST(Outfit, KeepsClothAndHairWithinTheirLimits) {
   EXPECT_EQ(share(options, [](const Outfit& o) { return o.hair == Hair::bald && o.hair_m > 0.F; }), 0.0);
 }
 
+TEST(Outfit, AddsWhatIsCarriedAndLeavesTheRestAsItIs) {
+  OutfitOptions options;
+  EXPECT_EQ(share(options, [](const Outfit& o) { return o.bag == Bag::on_strap || o.held > Held::box; }), 0.0);
+  options.carried = 0.5F;
+  EXPECT_NEAR(share(options, [](const Outfit& o) { return o.bag == Bag::on_strap || o.held > Held::box; }), 0.5, 0.05);
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    Random usual(9, i), carrying(9, i);
+    const Outfit a = sample_outfit({}, usual), b = sample_outfit(options, carrying);
+    EXPECT_EQ(a.hair_m, b.hair_m);
+    EXPECT_EQ(a.backpack, b.backpack);
+    EXPECT_EQ(a.left_hand, b.left_hand);
+  }
+}
+
 TEST(Outfit, RefusesOptionsOutOfRange) {
   OutfitOptions options;
   options.skirt = 1.5F;

@@ -183,7 +183,8 @@ void Wardrobe::add_bag(Bag bag, bool left, Random& random) {
   const float high = uniform(random, 0.09, 0.18);
   const float wide = uniform(random, 0.1, 0.2);
   const float thick = uniform(random, 0.03, 0.07);
-  if (bag == Bag::at_hip) {
+  if (bag == Bag::on_strap) add_strap(left);
+  if (bag != Bag::in_hand) {
     const float y = segment(Bone::l_thigh).head.y();
     const float side = extent(y, high, {Bone::pelvis, Bone::l_thigh, Bone::r_thigh}).half_width + thick;
     add_box({left ? side : -side, y, 0.F}, diagonal(thick, high, wide), Bone::pelvis);
@@ -203,9 +204,13 @@ void Wardrobe::add_held(Held held, bool left, Random& random) {
   switch (held) {
     case Held::none:
       return;
+    case Held::umbrella:
+    case Held::broom:
+    case Held::cane:
+      return add_upright(held, left, random);
     case Held::cup: {
       const float radius = uniform(random, 0.03, 0.045);
-      add_cylinder(in_palm(radius), uniform(random, 0.04, 0.07) * axes.col(2), radius, bone);
+      add_cylinder(in_palm(radius), uniform(random, 0.04, 0.07) * axes.col(2), radius, skin({{bone, 1.F}}));
       return;
     }
     case Held::phone:
@@ -214,7 +219,8 @@ void Wardrobe::add_held(Held held, bool left, Random& random) {
     case Held::stick: {
       const float half = uniform(random, 0.15, 0.6);
       const float shift = uniform(random, -0.8, 0.8) * half;
-      add_cylinder(in_palm(0.012F) + shift * axes.col(2), half * axes.col(2), uniform(random, 0.008, 0.018), bone);
+      add_cylinder(in_palm(0.012F) + shift * axes.col(2), half * axes.col(2), uniform(random, 0.008, 0.018),
+                   skin({{bone, 1.F}}));
       return;
     }
     case Held::box: {
@@ -223,6 +229,61 @@ void Wardrobe::add_held(Held held, bool left, Random& random) {
       return;
     }
   }
+}
+
+void Wardrobe::add_strap(bool left) {
+  constexpr int kRows = 14;
+  constexpr float kWide_m = 0.022F, kNear_m = 0.035F, kGap_m = 0.008F;
+  const float side = left ? 1.F : -1.F, hip = segment(Bone::l_thigh).head.y();
+  const Vector3f shoulder = segment(left ? Bone::r_upper_arm : Bone::l_upper_arm).head;
+  const float waist = extent(hip, 0.05F, {Bone::pelvis, Bone::l_thigh, Bone::r_thigh}).half_width;
+  const auto weights = [&](const Vector3f& p) {
+    const float up = smooth_step(segment(Bone::spine).head.y(), segment(Bone::chest).head.y(), p.y());
+    return skin({{Bone::pelvis, 1.F - up}, {Bone::chest, up}});
+  };
+  for (const bool front : {true, false}) {
+    Sheet sheet;
+    float z = 0.F;
+    for (int r = 0; r < kRows; ++r) {
+      const float share = float(r) / (kRows - 1);
+      const Vector3f on_way = share * Vector3f(side * waist - 0.65F * shoulder.x(), hip - shoulder.y(), 0.F) +
+                              Vector3f(0.65F * shoulder.x(), shoulder.y() + 0.04F * (1.F - share), 0.F);
+      bool found = false;
+      for (std::size_t v = 0; v < mover_.size(); ++v) {
+        const Vector3f& p = mesh_.vertices[v];
+        if (std::abs(p.x() - on_way.x()) > kNear_m || std::abs(p.y() - on_way.y()) > kNear_m) continue;
+        if (mover_[v] == Bone::head || mover_[v] == Bone::neck) continue;
+        z = !found ? p.z() : front ? std::max(z, p.z()) : std::min(z, p.z());
+        found = true;
+      }
+      const float out = z + (front ? kGap_m : -kGap_m);
+      sheet.rows.push_back({{on_way.x(), on_way.y() + kWide_m, out}, {on_way.x(), on_way.y() - kWide_m, out}});
+    }
+    add_sheet(
+        sheet, weights, [](const Vector3f&) { return kBackground; }, Fabric::accessory);
+  }
+}
+
+void Wardrobe::add_upright(Held held, bool left, Random& random) {
+  const Bone bone = left ? Bone::l_hand : Bone::r_hand;
+  const Vector3f palm = 0.45F * segment(bone).head + 0.55F * segment(bone).tail + 0.02F * hand_axes(left).col(1);
+  const SkinWeights weights = hanging(bone, palm);
+  const float down = uniform(random, 0.38, 0.5) * mesh_.stature_m;
+  const auto stick = [&](float low, float high, float radius) {
+    add_cylinder(palm + Vector3f(0.F, 0.5F * (low + high), 0.F), Vector3f(0.F, 0.5F * (high - low), 0.F), radius,
+                 weights);
+  };
+  if (held == Held::broom) {
+    const float turn = uniform(random, 0.0, kPi), wide = uniform(random, 0.12, 0.2), tall = uniform(random, 0.02, 0.06);
+    const Matrix3f head = Eigen::AngleAxisf(turn, Vector3f::UnitY()).toRotationMatrix() * diagonal(wide, tall, 0.03F);
+    stick(-down, uniform(random, 0.2, 0.7), 0.012F);
+    add_box(palm - Vector3f(0.F, down, 0.F), head, weights);
+    return;
+  }
+  const bool umbrella = held == Held::umbrella;
+  stick(-down, 0.04F, 0.01F);
+  if (umbrella) stick(0.06F - down, -0.15F, uniform(random, 0.02, 0.045));
+  add_box(palm + Vector3f(0.F, 0.04F, 0.F), diagonal(0.015F, 0.015F, 0.06F), weights);
 }
 
 Wardrobe::Extent Wardrobe::extent(float y, float reach_m, std::initializer_list<Bone> bones) const {
@@ -307,7 +368,8 @@ void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, const 
   }
 }
 
-void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, float radius_m, Bone bone) {
+void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, float radius_m,
+                            const SkinWeights& weights) {
   constexpr int kSides = 12;
   const Vector3f axis = half_axis.normalized();
   const Vector3f side = axis.unitOrthogonal();
@@ -323,11 +385,7 @@ void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, f
     sheet.rows.push_back(std::move(row));
   }
   add_sheet(
-      sheet,
-      [&](const Vector3f&) {
-        return skin({{bone, 1.F}});
-      },
-      [](const Vector3f&) { return kBackground; }, Fabric::accessory);
+      sheet, [&](const Vector3f&) { return weights; }, [](const Vector3f&) { return kBackground; }, Fabric::accessory);
 }
 
 SkinWeights Wardrobe::skin(std::initializer_list<Influence> influences) const {

@@ -46,7 +46,12 @@ class Wardrobe {
   void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, const SkinWeights& weights);
   /// Adds a rig bone that hangs from a hand at a point, and returns the weights of things that it moves.
   SkinWeights hanging(Bone hand, const Eigen::Vector3f& from);
-  void add_cylinder(const Eigen::Vector3f& centre, const Eigen::Vector3f& half_axis, float radius_m, Bone bone);
+  void add_cylinder(const Eigen::Vector3f& centre, const Eigen::Vector3f& half_axis, float radius_m,
+                    const SkinWeights& weights);
+  /// Adds a strap over the trunk from a bag at one hip to the other shoulder, in front and behind.
+  void add_strap(bool left);
+  /// Adds what stays upright in a hand whatever the arm does: umbrella, broom or cane.
+  void add_upright(Held held, bool left, Random& random);
 
   struct Influence {
     Bone bone;
