@@ -86,7 +86,9 @@ class Builder {
       sitters_.push_back(plans_[i].person);
       plan_of_.push_back(i);
     }
-    groups_ = make_groups(scene_, sitters_, random_);
+    SceneOptions still = scene_;
+    still.load_probability = 0.F;  // it would stay where it is while the hands move on
+    groups_ = make_groups(still, sitters_, random_);
     stage_ = place_people(scene_, placement_, ground_.view.camera, sitters_, groups_, random_);
     if (stage_.groups.empty()) hold_camera();
     for (const PlacedGroup& placed : stage_.groups) {

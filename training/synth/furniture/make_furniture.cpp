@@ -353,4 +353,25 @@ Furniture make_counter(float height_m, Random& random) {
   return std::move(counter.piece);
 }
 
+Furniture make_doorway(float height_m, float width_m, Random& random) {
+  FurnitureBuilder wall(random);
+  const std::uint8_t paint = wall.stuff(Stuff::wall), wood = wall.stuff(Stuff::wood);
+  const float half = between(0.04, 0.13, random), wide = between(0.75, 1.1, random);
+  const float top = std::min(height_m, between(1.95, 2.15, random));
+  wall.box({-width_m, 0.F, -half}, {0.F, height_m, half}, paint);
+  const bool whole = chance(0.6, random);  // else it ends at its edge
+  if (whole) {
+    wall.box({wide, 0.F, -half}, {wide + between(0.1, 1.0, random) * width_m, height_m, half}, paint);
+    if (top < height_m) wall.box({0.F, top, -half}, {wide, height_m, half}, paint);
+  }
+  if (chance(0.7, random)) {
+    const float deep = half + 0.015F;
+    add_box(wall.piece.mesh, Vector3f(-0.06F, 0.F, -deep), Vector3f(0.012F, top, deep), wood);
+    if (whole) add_box(wall.piece.mesh, Vector3f(wide - 0.012F, 0.F, -deep), Vector3f(wide + 0.06F, top, deep), wood);
+    if (whole)
+      add_box(wall.piece.mesh, Vector3f(-0.06F, top - 0.012F, -deep), Vector3f(wide + 0.06F, top + 0.06F, deep), wood);
+  }
+  return std::move(wall.piece);
+}
+
 }  // namespace vesalius::synth

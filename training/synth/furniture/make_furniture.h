@@ -39,6 +39,11 @@ void add_small_things(FurnitureBuilder& table, float half_x, float half_z, float
 /// some small things, and often a front. `height_m` is that of its top.
 Furniture make_desk_before(float height_m, Random& random);
 
+/// Returns a wall up to `height_m` with the opening of a door in it, perhaps with a frame. The opening begins at x = 0
+/// and runs to +x; the wall before it is `width_m` wide, the one after it may be short or missing. The wall is about z
+/// = 0.
+Furniture make_doorway(float height_m, float width_m, Random& random);
+
 /// Returns a closed counter, whose near side is at z = 0, with things on it.
 Furniture make_counter(float height_m, Random& random);
 

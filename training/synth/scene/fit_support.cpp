@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "synth/furniture/care.h"
 #include "synth/furniture/seats.h"
 #include "synth/mesh/palette.h"
 
@@ -30,17 +31,10 @@ std::vector<Bone> main_bones(const BodyMesh& mesh) {
 
 bool is_seat_of(Bone bone) { return bone == Bone::pelvis || bone == Bone::l_thigh || bone == Bone::r_thigh; }
 bool is_trunk(Bone bone) { return bone == Bone::pelvis || bone == Bone::spine || bone == Bone::chest; }
+bool is_left_foot(Bone bone) { return bone == Bone::l_foot; }
+bool is_right_foot(Bone bone) { return bone == Bone::r_foot; }
 bool is_lower_leg(Bone bone) {
   return bone == Bone::l_shin || bone == Bone::r_shin || bone == Bone::l_foot || bone == Bone::r_foot;
-}
-
-/// Returns the frame below the hips that is turned to the direction in which they face.
-Eigen::Isometry3f body_from_hips(const PosedBody& body) {
-  const Vector3f& left = body.joints[index(Bone::l_thigh)];
-  const Vector3f& right = body.joints[index(Bone::r_thigh)];
-  const Vector3f front = (left - right).cross(Vector3f::UnitY());
-  const Vector3f middle = 0.5F * (left + right);
-  return standing_at(middle.x(), 0.F, middle.z(), std::atan2(front.x(), front.z()));
 }
 
 /// The measures of a sitting body in a frame whose z axis runs forwards from below the hips.
@@ -68,6 +62,7 @@ class Sitter {
     fit.half_width_m = half_width();
     fit.back_m = std::clamp(shoulder_y_ - fit.height_m, 0.25F, 0.7F);
     fit.body_from_seat = body_from_hips_ * Eigen::Translation3f(0.F, 0.F, back_z);
+    for (std::size_t i = 0; i < fit.soles.size(); ++i) fit.soles[i] = sole(i == 0) - Vector3f(0.F, 0.F, back_z);
     return fit;
   }
 
@@ -117,6 +112,14 @@ class Sitter {
     return half;
   }
 
+  /// Returns the middle of a foot along the floor, at its lowest height.
+  Vector3f sole(bool left) const {
+    Eigen::AlignedBox3f foot;
+    for_each(left ? is_left_foot : is_right_foot, [&](const Vector3f& p) { foot.extend(p); });
+    return foot.isEmpty() ? Vector3f(0.F, 0.F, knee_z_)
+                          : Vector3f(foot.center().x(), foot.min().y(), foot.center().z());
+  }
+
   Eigen::Isometry3f body_from_hips_;
   std::vector<Bone> bones_;
   std::vector<Vector3f> points_;
@@ -150,6 +153,14 @@ SeatShape draw_shape(const SeatFit& fit, SeatKind kind, Random& random) {
 
 }  // namespace
 
+Eigen::Isometry3f body_from_hips(const PosedBody& body) {
+  const Vector3f& left = body.joints[index(Bone::l_thigh)];
+  const Vector3f& right = body.joints[index(Bone::r_thigh)];
+  const Vector3f front = (left - right).cross(Vector3f::UnitY());
+  const Vector3f middle = 0.5F * (left + right);
+  return standing_at(middle.x(), 0.F, middle.z(), std::atan2(front.x(), front.z()));
+}
+
 std::optional<SeatFit> fit_seat(const BodyMesh& mesh, const PosedBody& body) { return Sitter(mesh, body).fit(); }
 
 std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline& body, float swell_m, Random& random) {
@@ -171,6 +182,41 @@ std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline
     if (soft && kind != SeatKind::stool) add_seat_cushions(shape, swell_m, seat, random);
     move(seat, place);
     if (!sinks_in(body, seat.solids)) return seat;
+  }
+  return std::nullopt;
+}
+
+std::optional<CareSeat> make_care_seat(const SeatFit& fit, const BodyOutline& body, Random& random) {
+  constexpr int kTries = 4;
+  enum Kind : std::uint8_t { wheelchair, toilet, bench };
+  constexpr std::array<Kind, 5> kDraws = {wheelchair, wheelchair, wheelchair, toilet, bench};
+  for (int i = 0; i < kTries; ++i) {
+    const Kind kind = kDraws[random.below(kDraws.size())];
+    CareSeat made;
+    SeatShape shape = draw_shape(fit, SeatKind::chair, random);
+    Eigen::Isometry3f place = fit.body_from_seat;
+    if (kind == wheelchair) {
+      made.lift_m = between(0.05, 0.13, random);
+      shape.height_m += made.lift_m;
+      shape.width_m = std::max(shape.width_m, 2.F * fit.half_width_m + 0.02F);
+      std::array<Vector3f, 2> soles = fit.soles;
+      for (Vector3f& sole : soles) {
+        constexpr float kRaised_m = 0.12F;  // a foot in the air, as of crossed legs, has its rest below it
+        sole.y() = made.lift_m + (sole.y() < kRaised_m ? std::max(0.F, sole.y()) : 0.F);
+      }
+      made.seat = make_wheelchair(shape, soles, random);
+    } else if (kind == toilet) {
+      shape.depth_m = std::min(shape.depth_m, 0.46F);
+      made.seat = make_toilet(shape, random);
+    } else {
+      shape.width_m = between(1.0, 1.9, random);
+      made.seat = make_bench(shape, random);
+      const float room = std::max(0.F, 0.5F * shape.width_m - fit.half_width_m);
+      place = place * Eigen::Translation3f(between(-1.0, 1.0, random) * room, 0.F, 0.F);
+    }
+    move(made.seat, place);
+    const Eigen::Isometry3f lifted(Eigen::Translation3f(0.F, made.lift_m, 0.F));
+    if (!sinks_in(moved(body, lifted), made.seat.solids)) return made;
   }
   return std::nullopt;
 }

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "synth/furniture/care.h"
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/seats.h"
 #include "synth/mesh/palette.h"
 #include "synth/scene/fit_support.h"
+#include "synth/scene/load.h"
 
 namespace vesalius::synth {
 namespace {
@@ -107,7 +109,25 @@ void add_lap_blanket(const SeatFit& fit, const GroupMember& member, PeopleGroup&
               fit.body_from_seat, member, group, random);
 }
 
+/// Returns somebody on a wheelchair, a toilet or a bench, or nothing if none fits.
+std::optional<PeopleGroup> care_group(const SceneOptions& options, const Posed& posed, Random& random) {
+  std::optional<CareSeat> made = make_care_seat(*posed.seat, posed.member.outline, random);
+  if (!made) return std::nullopt;
+  PeopleGroup group;
+  group.members.push_back(posed.member);
+  put(group.members[0], Isometry3f(Translation3f(0.F, made->lift_m, 0.F)));
+  group.furniture.push_back(std::move(made->seat));
+  SeatFit fit = *posed.seat;
+  fit.height_m += made->lift_m;
+  if (chance(0.5 * options.table_probability, random)) add_table(fit, group, random);
+  if (asked(options.blanket_probability, random)) add_lap_blanket(fit, group.members[0], group, random);
+  return group;
+}
+
 std::optional<PeopleGroup> sitting_group(const SceneOptions& options, Posed posed, Random& random) {
+  if (asked(options.care_probability, random)) {
+    if (std::optional<PeopleGroup> group = care_group(options, posed, random)) return group;
+  }
   const float swell = draw_swell(options, random);
   std::optional<Furniture> seat = make_fitting_seat(*posed.seat, posed.member.outline, swell, random);
   if (!seat) return std::nullopt;
@@ -135,6 +155,11 @@ PeopleGroup standing_group(const SceneOptions& options, const std::vector<Person
     const Eigen::Vector3f& hips = group.members[0].body.joints[index(Bone::pelvis)];
     add_desk(Isometry3f(Translation3f(hips.x(), 0.F, hips.z())), 0.2F, 0.45F * stature, 0.72F * stature, make_counter,
              group, random);
+  }
+  if (posed.posture == Posture::standing && asked(options.load_probability, random)) {
+    const GroupMember& member = group.members[0];
+    std::optional<Furniture> load = make_load(member.body, member.outline, random);
+    if (load && keeps_clear(group, *load)) group.furniture.push_back(std::move(*load));
   }
   return group;
 }
@@ -178,6 +203,15 @@ BlanketPlace draw_cover(const BedFit& fit, float ground_m, Random& random) {
           .top_m = ground_m + 0.7F};
 }
 
+/// As draw_cover(), but up to the neck of somebody between the rails of a bed.
+BlanketPlace draw_high_cover(const BedFit& fit, const PosedBody& body, float bed_m, float ground_m, Random& random) {
+  BlanketPlace cover = draw_cover(fit, ground_m, random);
+  const float neck = (fit.body_from_bed.inverse() * body.joints[index(Bone::neck)]).z();
+  cover.high = {std::min(cover.high.x(), 0.5F * bed_m), neck + between(-0.1, 0.06, random)};
+  cover.low = {-cover.high.x(), std::max(cover.low.y(), -0.5F * fit.length_m - 0.04F)};
+  return cover;
+}
+
 /// Returns a sofa below a body that lies along it at a height, in the body's frame, or nothing if it is too wide.
 std::optional<Furniture> make_lying_sofa(const BedFit& fit, float height_m, float swell_m, Random& random) {
   constexpr float kWidest_m = 0.85F;
@@ -201,20 +235,23 @@ PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random
   PeopleGroup group;
   const BedFit fit = fit_bed(posed.member.body);
   float ground = 0.F;
+  bool care = false;
+  float width = 0.F;
   if (chance(options.bed_probability, random)) {
     const float height = between(0.25, 0.6, random);
     GroupMember raised = posed.member;
     put(raised, Isometry3f(Translation3f(0.F, height - kCushion_m, 0.F)));
+    care = asked(options.care_probability, random);
     const float swell = draw_swell(options, random);
-    if (asked(options.lying_sofa_probability, random)) {
+    if (!care && asked(options.lying_sofa_probability, random)) {
       std::optional<Furniture> sofa = make_lying_sofa(fit, height, swell, random);
       if (sofa && !sinks_in(raised.outline, sofa->solids)) group.furniture.push_back(std::move(*sofa));
     }
     constexpr int kTries = 3;
     for (int i = 0; i < kTries && group.furniture.empty(); ++i) {
-      const float width = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
+      width = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
       const float length = std::max(between(1.9, 2.1, random), fit.length_m + 0.1F);
-      Furniture bed = make_bed(width, length, height, random);
+      Furniture bed = (care ? make_care_bed : make_bed)(width, length, height, random);
       if (swell > 0.F) add_soft_mattress(width, length, height, swell, bed, random);
       move(bed, fit.body_from_bed);
       if (!sinks_in(raised.outline, bed.solids)) group.furniture.push_back(std::move(bed));
@@ -225,8 +262,10 @@ PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random
     }
   }
   group.members.push_back(std::move(posed.member));
-  if (asked(options.blanket_probability, random)) {
-    const BlanketPlace cover = draw_cover(fit, ground, random);
+  const bool high = care && !group.furniture.empty() && chance(0.6, random);
+  if (high || asked(options.blanket_probability, random)) {
+    const BlanketPlace cover =
+        high ? draw_high_cover(fit, group.members[0].body, width, ground, random) : draw_cover(fit, ground, random);
     add_blanket(cover, fit.body_from_bed, group.members[0], group, random);
   }
   return group;

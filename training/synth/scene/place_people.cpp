@@ -23,6 +23,9 @@ float half_fan(const Camera& camera, float pitch_rad) {
   return std::min(kPi, 1.15F * std::atan2(std::tan(half_u), std::cos(std::abs(pitch_rad) + half_v)));
 }
 
+/// The share of the bones of somebody whom a border cuts that remains in the picture.
+constexpr float kCutVisible = 1.F / 7.F;
+
 /// The shares of the bones' ends that are in the picture, and beside it to the left or right.
 struct Visible {
   float inside = 0.F, beside = 0.F;
@@ -52,6 +55,12 @@ Vector3f middle_of(const PeopleGroup& group) {
   return bounds.center();
 }
 
+std::vector<BodyOutline> moved_bodies(const PeopleGroup& group, const Isometry3f& world_from_group) {
+  std::vector<BodyOutline> bodies;
+  for (const GroupMember& member : group.members) bodies.push_back(moved(member.outline, world_from_group));
+  return bodies;
+}
+
 class Placer {
  public:
   Placer(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
@@ -63,6 +72,7 @@ class Placer {
   Stage run() {
     const float usual_height = between(0.3, 1.5, random_);
     hold_camera(groups_.empty() ? usual_height : middle_of(groups_[0]).y());
+    cuts_ = asked(options_.cut_share, random_);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       constexpr int kCameras = 5;
       bool placed = place(int(g));
@@ -89,11 +99,30 @@ class Placer {
       const bool cut = at_border && i < kTriesAtBorder;
       const Isometry3f world_from_group = draw_place(groups_[g], cut);
       if (accept(groups_[g], world_from_group, cut)) {
+        if (cuts_ && stage_.groups.empty()) tilt(moved_bodies(groups_[g], world_from_group));
         stage_.groups.push_back({g, world_from_group});
         return true;
       }
     }
     return false;
+  }
+
+  /// Tilts the camera so that its borders cut somebody of the first group, if tilts within the limits can.
+  void tilt(const std::vector<BodyOutline>& bodies) {
+    constexpr int kTries = 16;
+    constexpr float kMostVisible = 0.75F, kRadPerDeg = kPi / 180.F;
+    CameraPose tilted = stage_.camera;
+    View view = view_;
+    for (int i = 0; i < kTries; ++i) {
+      tilted.pitch_rad = kRadPerDeg * between(placement_.pitch_min_deg, placement_.pitch_max_deg, random_);
+      view.camera_from_world = tilted.world_from_camera().inverse();
+      float least = 1.F;
+      for (const BodyOutline& body : bodies) least = std::min(least, visible_share(body, view).inside);
+      if (least < kCutVisible || least > kMostVisible) continue;
+      stage_.camera = tilted;
+      view_ = view;
+      return;
+    }
   }
 
   float draw_heading(const PeopleGroup& group) {
@@ -114,7 +143,9 @@ class Placer {
   Isometry3f draw_place(const PeopleGroup& group, bool at_border) {
     const Vector3f middle = middle_of(group);
     const float rise = stage_.camera.height_m - middle.y();
-    const float far = sample_distance(placement_, random_);
+    const bool close = cuts_ && stage_.groups.empty() && chance(0.4, random_);
+    const float far =
+        close ? placement_.distance_min_m + between(0.0, 0.4, random_) : sample_distance(placement_, random_);
     // If the distance is less than the height, the place is straight below the camera.
     const float along = std::sqrt(std::max(0.F, far * far - rise * rise)) + between(0.0, 0.3, random_);
     const float bearing = draw_bearing(at_border);
@@ -129,13 +160,14 @@ class Placer {
   bool accept(const PeopleGroup& group, const Isometry3f& world_from_group, bool at_border) {
     constexpr float kLeastCut = 0.15F;
     float cut = 0.F;
-    std::vector<BodyOutline> bodies;
-    for (const GroupMember& member : group.members) {
-      bodies.push_back(moved(member.outline, world_from_group));
-      const Visible visible = visible_share(bodies.back(), view_);
-      if (visible.inside < options_.min_visible) return false;
+    const bool first = cuts_ && stage_.groups.empty();
+    const float least = first ? std::min(kCutVisible, options_.min_visible) : options_.min_visible;
+    const std::vector<BodyOutline> bodies = moved_bodies(group, world_from_group);
+    for (const BodyOutline& body : bodies) {
+      const Visible visible = visible_share(body, view_);
+      if (visible.inside < least) return false;
       cut = std::max(cut, visible.beside);
-      if (!stage_.occupancy.free_for(bodies.back())) return false;
+      if (!stage_.occupancy.free_for(body)) return false;
     }
     if (at_border && cut < kLeastCut) return false;
     std::vector<OrientedBox> solids;
@@ -154,6 +186,7 @@ class Placer {
   const std::vector<PeopleGroup>& groups_;
   Random& random_;
   View view_;
+  bool cuts_ = false;  ///< whether borders are to cut the first group
   Stage stage_;
 };
 

@@ -18,6 +18,10 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                   "tilted boards and screens, bags, heaps of cushions and blankets."});
   visitor.option(prefix + "near-nobody-share", o.near_nobody_share,
                  {"", 0.0, 1.0, "Share of large things close to the camera that are of this sort."});
+  visitor.option(prefix + "gear-share", o.gear_share,
+                 {"", 0.0, 1.0,
+                  "Share of furniture, also of things before people and close to the camera, that stands on feet, rods "
+                  "and castors: office chairs, screens on arms, trolleys, walkers, dressed machines, ladders, lamps."});
   visitor.option(prefix + "occluder-probability", o.occluder_probability,
                  {"", 0.0, 1.0, "Probability that something stands between the camera and a person."});
   visitor.option(prefix + "near-probability", o.near_probability,
@@ -35,6 +39,14 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
   visitor.option(prefix + "soft-depth", o.soft_depth_m, {"m", 0.0, 0.2, "How deep people sink into those at most."});
   visitor.option(prefix + "blanket-probability", o.blanket_probability,
                  {"", 0.0, 1.0, "Probability of a blanket over a lying person or the legs of a sitting one."});
+  visitor.option(prefix + "care-probability", o.care_probability,
+                 {"", 0.0, 1.0,
+                  "Probability of a wheelchair, toilet or bench below a sitting person, and of a bed with rails, often "
+                  "with a blanket up to the neck, below a lying one who has a bed."});
+  visitor.option(prefix + "load-probability", o.load_probability,
+                 {"", 0.0, 1.0,
+                  "Probability that somebody who stands with both hands in front carries a box or tray, or pushes a "
+                  "trolley or walker; not in clips."});
   visitor.option(prefix + "lying-sofa-probability", o.lying_sofa_probability,
                  {"", 0.0, 1.0, "Probability of a sofa instead of the bed of a lying person."});
   visitor.option(prefix + "desk-probability", o.desk_probability,
@@ -44,8 +56,15 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
   visitor.option(prefix + "wall-probability", o.wall_probability,
                  {"", 0.0, 1.0, "Probability of a wall close behind the people, as the camera sees them."});
   visitor.option(prefix + "wall-gap-max", o.wall_gap_max_m, {"m", 0.0, 2.0, "Greatest distance to that wall."});
+  visitor.option(
+      prefix + "doorway-probability", o.doorway_probability,
+      {"", 0.0, 1.0, "Probability that a person is in or behind an opening in a wall, whose edge hides a part."});
   visitor.option(prefix + "border-share", o.border_share,
                  {"", 0.0, 1.0, "Share of people whom the left or right border of the picture is to cut."});
+  visitor.option(prefix + "cut-share", o.cut_share,
+                 {"", 0.0, 1.0,
+                  "Share of cameras so near or so tilted that borders cut the first person, of whom a seventh may "
+                  "remain instead of min-visible."});
   visitor.option(prefix + "dark-furniture", o.dark_furniture,
                  {"", 0.0, 1.0, "Share of furniture that sends back next to no infrared light, as black leather."});
   visitor.option(prefix + "frontal-share", o.frontal_share,

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <limits>
 
 #include "synth/scene/occupancy.h"
 #include "synth/scene/test_plans.h"
@@ -57,6 +59,8 @@ TEST(SceneOptions, KeepPeopleOutOfSolidsAndWallsWithAllOn) {
   options.nobody_share = options.near_nobody_share = 0.5F;
   options.soft_probability = options.blanket_probability = options.lying_sofa_probability = 0.5F;
   options.desk_probability = options.wall_probability = options.border_share = 0.5F;
+  options.gear_share = options.care_probability = options.load_probability = 0.5F;
+  options.doorway_probability = options.cut_share = 0.5F;
   int placed = 0;
   constexpr int kScenes = 120;
   for (std::uint64_t i = 0; i < kScenes; ++i) {
@@ -110,6 +114,99 @@ TEST(SceneOptions, PutLyingPeopleOnSofas) {
   });
   EXPECT_GE(people, 30);
   EXPECT_GE(sofas, people / 3) << "others are too wide for one";
+}
+
+TEST(SceneOptions, CoverPeopleInBedsWithRailsToTheNeck) {
+  SceneOptions options = bare();
+  options.bed_probability = options.blanket_probability = 1.F;
+  const double to_chest = person_pixels(options, &PoseSamplerOptions::lying);
+  options.care_probability = 1.F;
+  const double to_neck = person_pixels(options, &PoseSamplerOptions::lying);
+  EXPECT_LT(to_neck, to_chest);
+  EXPECT_GT(to_neck, 0.1 * to_chest);
+}
+
+TEST(SceneOptions, SeatPeopleInWheelchairsWithTheirFeetOnTheRests) {
+  SceneOptions options = bare();
+  options.care_probability = 1.F;
+  int people = 0, lifted = 0, held = 0;
+  for_scenes(80, options, &PoseSamplerOptions::sitting, [&](const BuiltScene& built) {
+    for (const PlacedPerson& person : built.people) {
+      ++people;
+      Vector3f sole(0.F, std::numeric_limits<float>::infinity(), 0.F);
+      for (const Vector3f& p : person.body.vertices) sole = p.y() < sole.y() ? p : sole;
+      if (sole.y() < 0.045F) continue;  // on a toilet or bench the feet are on the floor
+      ++lifted;
+      held += std::ranges::any_of(
+                  built.solids,
+                  [&](const OrientedBox& box) { return box.half.y() < 0.01F && -depth_inside(box, sole) < 0.02F; })
+                  ? 1
+                  : 0;
+    }
+  });
+  EXPECT_GE(people, 70);
+  EXPECT_GE(lifted, people / 3);
+  EXPECT_EQ(held, lifted);
+}
+
+TEST(SceneOptions, HidePeopleBehindTheEdgesOfDoorways) {
+  SceneOptions options = bare();
+  const double whole = person_pixels(options, &PoseSamplerOptions::idle);
+  options.doorway_probability = 1.F;
+  const double hidden = person_pixels(options, &PoseSamplerOptions::idle);
+  EXPECT_LT(hidden, 0.9 * whole);
+  EXPECT_GT(hidden, 0.3 * whole);
+}
+
+TEST(SceneOptions, CutPeopleAtTheUpperAndLowerBorders) {
+  SceneOptions options = bare();
+  CameraPlacement upright;
+  upright.roll_max_deg = 0.F;
+  const auto cut = [&] {
+    std::array<int, 2> beyond{};  // above, below
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      const BuiltScene built = build_scene(options, upright, kCamera, {plan_of({}, 0)}, Random(45, i));
+      for (const PlacedPerson& person : built.people) {
+        const auto row = [&](const Vector3f& p) { return kCamera.pixel(built.view.camera_from_world * p).y(); };
+        beyond[0] += row(person.body.joints[index(Bone::neck)]) < 0.F ? 1 : 0;
+        beyond[1] += row(person.body.joints[index(Bone::l_thigh)]) > float(kCamera.height) ? 1 : 0;
+      }
+    }
+    return beyond;
+  };
+  const std::array<int, 2> usual = cut();
+  options.cut_share = 1.F;
+  const std::array<int, 2> tilted = cut();
+  EXPECT_GE(tilted[0], usual[0] + 8) << "legs without heads";
+  EXPECT_GE(tilted[1], usual[1] + 8) << "heads without legs";
+}
+
+TEST(SceneOptions, FillRoomsWithGear) {
+  SceneOptions options = bare();
+  options.furniture_min = options.furniture_max = 4;
+  const auto solids = [&] {
+    std::size_t sum = 0;
+    for_scenes(30, options, &PoseSamplerOptions::idle, [&](const BuiltScene& built) {
+      sum += std::ranges::count_if(built.solids, [](const OrientedBox& box) { return box.half.minCoeff() < 0.02F; });
+    });
+    return sum;
+  };
+  const std::size_t usual = solids();
+  options.gear_share = 1.F;
+  EXPECT_GT(solids(), usual + usual / 2) << "it stands on rods";
+}
+
+TEST(SceneOptions, GiveLoadsToThoseWhoHoldTheirHandsBeforeThem) {
+  SceneOptions options = bare();
+  const auto loaded = [&] {
+    int count = 0;
+    for_scenes(60, options, &PoseSamplerOptions::carrying,
+               [&](const BuiltScene& built) { count += built.solids.empty() ? 0 : 1; });
+    return count;
+  };
+  EXPECT_EQ(loaded(), 0);
+  options.load_probability = 1.F;
+  EXPECT_GE(loaded(), 20);
 }
 
 TEST(SceneOptions, PutCountersBeforeStandingPeople) {

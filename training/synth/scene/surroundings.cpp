@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "synth/furniture/gear.h"
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/nobody.h"
 #include "synth/mesh/palette.h"
@@ -29,12 +30,32 @@ class Furnisher {
                                                      FurnitureKind::plant, FurnitureKind::desk,  FurnitureKind::shelf,
                                                      FurnitureKind::table, FurnitureKind::pillar};
     constexpr float kMostHidden = 0.65F;
-    Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    const Furniture piece = asked(options_.gear_share, random_)
+                                ? draw_gear()
+                                : make_furniture(kKinds[random_.below(kKinds.size())], random_);
     for (int i = 0; i < kTries; ++i) {
       const Vector3f on_way = eye_ + between(0.3, 0.85, random_) * (person - eye_);
       const float x = on_way.x() + float(random_.normal(0.0, 0.3));
       const float z = on_way.z() + float(random_.normal(0.0, 0.3));
       if (put(piece, standing_at(x, 0.F, z, any_turn()), kMostHidden)) return;
+    }
+  }
+
+  /// Puts a wall with an opening about a person or before them, so that its edge hides a part of them.
+  void add_doorway(const Vector3f& person) {
+    constexpr float kMostHidden = 0.7F;
+    const Vector3f way(eye_.x() - person.x(), 0.F, eye_.z() - person.z());
+    const float height = room_.open ? between(2.3, 3.0, random_) : room_.height_m;
+    float widest = 2.2F;
+    for (int i = 0; i < 2 * kTries; ++i, widest *= 0.85F) {
+      const float ahead = std::min(between(-0.1, 0.6, random_), 0.4F * way.norm()),
+                  edge = between(-0.15, 0.25, random_);
+      const float side = chance(0.5, random_) ? 0.F : std::numbers::pi_v<float>;
+      const float yaw = std::atan2(way.x(), way.z()) + side + between(-0.9, 0.9, random_);
+      const Furniture wall = make_doorway(height, between(0.3, widest, random_), random_);
+      const Vector3f at = Vector3f(person.x(), 0.F, person.z()) + ahead * way.normalized();
+      if (put(wall, standing_at(at.x(), 0.F, at.z(), yaw) * Eigen::Translation3f(-edge, 0.F, 0.F), kMostHidden, true))
+        return;
     }
   }
 
@@ -55,8 +76,9 @@ class Furnisher {
     constexpr std::array<NobodyKind, 6> kNobodies = {NobodyKind::board,   NobodyKind::board,   NobodyKind::board,
                                                      NobodyKind::machine, NobodyKind::machine, NobodyKind::screens};
     const bool nobody = asked(options_.near_nobody_share, random_);
-    const Furniture piece = nobody ? make_nobody(kNobodies[random_.below(kNobodies.size())], random_)
-                                   : make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    const Furniture piece = asked(options_.gear_share, random_) ? draw_gear()
+                            : nobody ? make_nobody(kNobodies[random_.below(kNobodies.size())], random_)
+                                     : make_furniture(kKinds[random_.below(kKinds.size())], random_);
     for (int i = 0; i < kTries; ++i) {
       const float far = between(0.45, 1.3, random_);
       const float bearing = between(0.15, 0.8, random_) * (chance(0.5, random_) ? 1.F : -1.F);
@@ -74,7 +96,10 @@ class Furnisher {
 
   float any_turn() { return between(-std::numbers::pi, std::numbers::pi, random_); }
 
+  Furniture draw_gear() { return make_gear(static_cast<GearKind>(random_.below(kGearKindCount)), random_); }
+
   Piece draw_piece() {
+    if (asked(options_.gear_share, random_)) return {draw_gear()};
     if (asked(options_.nobody_share, random_)) return draw_nobody();
     if (chance(options_.mannequin_share, random_)) {
       constexpr std::array<FurnitureKind, 3> kLike = {FurnitureKind::coat_stand, FurnitureKind::mannequin,
@@ -220,6 +245,7 @@ void furnish(const SceneOptions& options, const RoomShape& room, const std::vect
              const Vector3f& eye, Occupancy& occupancy, Scene& scene, Random& random) {
   Furnisher furnisher(options, room, eye, occupancy, scene, random);
   for (const Vector3f& person : people) {
+    if (asked(options.doorway_probability, random)) furnisher.add_doorway(person);
     if (chance(options.occluder_probability, random)) furnisher.occlude(person);
   }
   const int span = options.furniture_max - options.furniture_min + 1;
