@@ -169,29 +169,43 @@ void choose(Trials& trials, Option option, std::initializer_list<float> values) 
   trials.choose([&](SensorOptions& o, float value) { option(o) = value; }, values);
 }
 
-/// Chooses what the driver does to depth: nothing, filling or smoothing alone, or all of it, then how much.
-void choose_filter(Trials& trials) {
-  const synth::DepthFilterOptions usual;
+/// Chooses what drivers and recorders do to depth: nothing, filling or smoothing alone, or all of it; and other sizes,
+/// with or without holes blended. All are tried together, since one hides or undoes what another does.
+void choose_treatment(Trials& trials) {
+  using Treatment = std::pair<synth::DepthFilterOptions, synth::ResamplingOptions>;
   std::array<synth::DepthFilterOptions, 5> filters;
-  filters.fill(usual);
   filters[1].share = filters[2].share = filters[4].share = 1.F;
   filters[3].share = 0.4F;
   filters[1].fill_share = 1.F;
   filters[1].smoothing = filters[1].blur_px = filters[1].far_blur_px = 0.F;
   filters[2].fill_share = filters[2].blur_px = filters[2].far_blur_px = 0.F;
-  trials.choose([](SensorOptions& o, const synth::DepthFilterOptions& filter) { o.filter = filter; }, filters);
-  if (trials.sensor().filter.share == 0.F) return;
-  choose(trials, [](SensorOptions& o) -> float& { return o.filter.smoothing; }, {0.F, 0.5F, 0.85F});
-  choose(trials, [](SensorOptions& o) -> float& { return o.filter.blur_px; }, {0.F, 3.F, 8.F});
-  choose(trials, [](SensorOptions& o) -> float& { return o.filter.far_blur_px; }, {0.F, 8.F, 20.F});
+  std::array<synth::ResamplingOptions, 3> sizes;
+  sizes[1].share = sizes[2].share = 1.F;
+  sizes[1].holes_blended = 0.F;
+  sizes[2].holes_blended = 1.F;
+  std::vector<Treatment> treatments;
+  for (const auto& filter : filters) {
+    for (const auto& size : sizes) treatments.emplace_back(filter, size);
+  }
+  const auto set = [](SensorOptions& o, const Treatment& treatment) {
+    o.filter = treatment.first;
+    o.variety.resampled = treatment.second;
+  };
+  trials.choose(set, treatments);
 }
 
-/// Chooses what recorders do to depth.
-void choose_size(Trials& trials) {
-  choose(trials, [](SensorOptions& o) -> float& { return o.variety.resampled.share; }, {0.F, 0.4F, 1.F});
-  if (trials.sensor().variety.resampled.share == 0.F) return;
-  choose(trials, [](SensorOptions& o) -> float& { return o.variety.resampled.smallest; }, {0.3F, 0.5F, 0.75F});
-  choose(trials, [](SensorOptions& o) -> float& { return o.variety.resampled.holes_blended; }, {0.F, 0.3F, 0.6F, 1.F});
+/// Chooses how much of it.
+void choose_amounts(Trials& trials) {
+  if (trials.sensor().filter.share > 0.F) {
+    choose(trials, [](SensorOptions& o) -> float& { return o.filter.smoothing; }, {0.F, 0.5F, 0.85F});
+    choose(trials, [](SensorOptions& o) -> float& { return o.filter.blur_px; }, {0.F, 3.F, 8.F});
+    choose(trials, [](SensorOptions& o) -> float& { return o.filter.far_blur_px; }, {0.F, 8.F, 20.F});
+  }
+  if (trials.sensor().variety.resampled.share > 0.F) {
+    choose(trials, [](SensorOptions& o) -> float& { return o.variety.resampled.smallest; }, {0.3F, 0.5F, 0.75F});
+    choose(trials, [](SensorOptions& o) -> float& { return o.variety.resampled.holes_blended; },
+           {0.F, 0.3F, 0.6F, 1.F});
+  }
 }
 
 /// Chooses errors that come of light.
@@ -208,7 +222,7 @@ void choose_light(Trials& trials) {
 
 constexpr int kPasses = 2;
 /// The most trials of a preset: itself, with its border, and what is chosen above.
-constexpr int kMostTrials = 2 + kPasses * (5 + 3 + 3 + 3 + 3 + 3 + 4 + 5 + 4);
+constexpr int kMostTrials = 2 + 15 + kPasses * (3 + 3 + 3 + 3 + 4 + 5 + 4);
 
 /// Returns the best preset of each kind of sensor.
 std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
@@ -230,9 +244,9 @@ Imitation imitate_with(const SensorOptions& preset, Rooms& rooms) {
   Trials trials(rooms, preset);
   Imitation found{.sensor = {}, .preset = trials.figures(), .figures = {}};
   trials.set_border(border_share(rooms.real, found.preset));
+  choose_treatment(trials);
   for (int pass = 0; pass < kPasses; ++pass) {
-    choose_filter(trials);
-    choose_size(trials);
+    choose_amounts(trials);
     choose_light(trials);
   }
   found.sensor = trials.sensor();

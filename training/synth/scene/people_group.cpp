@@ -1,6 +1,7 @@
 #include "synth/scene/people_group.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/seats.h"
 #include "synth/mesh/palette.h"
+#include "synth/scene/contact_pair.h"
 #include "synth/scene/fit_support.h"
 #include "synth/scene/load.h"
 
@@ -311,6 +313,39 @@ std::optional<double> probability_of_company(const SceneOptions& options, const 
   return options.beside_probability;
 }
 
+bool is_low(const Posed& posed) {
+  return posed.posture == Posture::kneeling || (posed.posture == Posture::sitting && !posed.seat);
+}
+
+/// Returns the next person after `people[first]` with whom a contact is possible: both stand, or one of them does and
+/// the other is low; -1 if there is none.
+int contact_of(const std::vector<std::optional<Posed>>& people, std::size_t first) {
+  const auto stands = [](const Posed& posed) { return posed.posture == Posture::standing; };
+  for (std::size_t i = first + 1; i < people.size(); ++i) {
+    if (!people[i]) continue;
+    const Posed &one = *people[first], &other = *people[i];
+    if ((stands(one) && (stands(other) || is_low(other))) || (is_low(one) && stands(other))) return int(i);
+  }
+  return -1;
+}
+
+/// Returns two people who touch in one of the ways that their postures allow, or nothing if they cannot.
+std::optional<PeopleGroup> contact_group(const std::vector<PersonPlan>& plans, const Posed& one, const Posed& other,
+                                         Random& random) {
+  constexpr int kTries = 4;
+  constexpr std::array kUpright = {Contact::embrace, Contact::handing, Contact::arm_around, Contact::hand_in_hand};
+  const bool helps = is_low(one) || is_low(other);
+  const int first = is_low(one) ? other.member.plan : one.member.plan;
+  const int second = is_low(one) ? one.member.plan : other.member.plan;
+  for (int i = 0; i < kTries; ++i) {
+    const Contact contact = kUpright[random.below(kUpright.size())];
+    auto pair =
+        touching_pair(helps ? Contact::helping_up : contact, plans[first], first, plans[second], second, random);
+    if (pair) return pair;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans,
@@ -321,10 +356,14 @@ std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vec
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (!people[i]) continue;
     Posed& posed = *people[i];
-    const std::optional<double> together = probability_of_company(options, posed);
-    const int partner = together && chance(*together, random) ? partner_of(people, i) : -1;
     std::optional<PeopleGroup> group;
-    if (partner >= 0) {
+    int partner = asked(options.contact_probability, random) ? contact_of(people, i) : -1;
+    if (partner >= 0) group = contact_group(plans, posed, *people[partner], random);
+    if (!group) {
+      const std::optional<double> together = probability_of_company(options, posed);
+      partner = together && chance(*together, random) ? partner_of(people, i) : -1;
+    }
+    if (!group && partner >= 0) {
       const Posed& other = *people[partner];
       group = posed.seat ? sofa_group(posed, other, random) : standing_pair(posed, other, random);
     }

@@ -159,7 +159,7 @@ float apart(const PlacedPerson& one, const PlacedPerson& other) {
 
 /// Returns the number of scenes with two standing people in which they nearly touch. `sunk` becomes true if two people
 /// overlap too much.
-int close_pairs(float beside_probability, int scenes, bool& sunk) {
+int close_pairs(const SceneOptions& options, int scenes, bool& sunk) {
   int close = 0;
   for (int i = 0; i < scenes; ++i) {
     Random random(21, static_cast<std::uint64_t>(i));
@@ -168,8 +168,7 @@ int close_pairs(float beside_probability, int scenes, bool& sunk) {
       plans.push_back(plan_of(sample_pose({}, random), random.next()));
       if (plans.back().posture != Posture::standing) plans.pop_back();
     }
-    const BuiltScene built = build_scene({.beside_probability = beside_probability}, {}, kCamera, plans,
-                                         Random(22, static_cast<std::uint64_t>(i)));
+    const BuiltScene built = build_scene(options, {}, kCamera, plans, Random(22, static_cast<std::uint64_t>(i)));
     if (built.people.size() < 2 || apart(built.people[0], built.people[1]) > 0.15F) continue;
     ++close;
     const auto outline = [&](const PlacedPerson& person) {
@@ -183,14 +182,23 @@ int close_pairs(float beside_probability, int scenes, bool& sunk) {
 TEST(BuildScene, PlacesPeopleSideBySideWithTheGivenProbability) {
   constexpr int kScenes = 40;
   bool sunk = false;
-  const int never = close_pairs(0.F, kScenes, sunk);
-  const int sometimes = close_pairs(0.5F, kScenes, sunk);
-  const int always = close_pairs(1.F, kScenes, sunk);
+  const int never = close_pairs({.beside_probability = 0.F}, kScenes, sunk);
+  const int sometimes = close_pairs({.beside_probability = 0.5F}, kScenes, sunk);
+  const int always = close_pairs({.beside_probability = 1.F}, kScenes, sunk);
   EXPECT_LE(never, kScenes / 8);
   EXPECT_GE(always, kScenes / 2) << "some have their arms in the way, some are cut off by the picture's border";
   EXPECT_GT(sometimes, never);
   EXPECT_LT(sometimes, always);
   EXPECT_FALSE(sunk);
+}
+
+TEST(BuildScene, LetsPeopleTouchWithTheGivenProbability) {
+  constexpr int kScenes = 40;
+  bool pressed = false;
+  const int never = close_pairs({}, kScenes, pressed),
+            always = close_pairs({.contact_probability = 1.F}, kScenes, pressed);
+  EXPECT_LE(never, kScenes / 8);
+  EXPECT_GE(always, kScenes / 2);
 }
 
 }  // namespace

@@ -32,6 +32,10 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                  {"", 0.0, 1.0, "Probability that two sitting people try to share a sofa."});
   visitor.option(prefix + "beside-probability", o.beside_probability,
                  {"", 0.0, 1.0, "Probability that two standing people stand side by side and touch, or nearly."});
+  visitor.option(
+      prefix + "contact-probability", o.contact_probability,
+      {"", 0.0, 1.0,
+       "Probability that two people embrace, hand something over, hold hands, support or help each other up."});
   visitor.option(prefix + "bed-probability", o.bed_probability,
                  {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
   visitor.option(prefix + "soft-probability", o.soft_probability,

@@ -20,6 +20,7 @@ struct SceneOptions {
   float table_probability = 0.35F;    ///< a table stands in front of a sitting person
   float sofa_probability = 0.4F;      ///< two sitting people share a sofa
   float beside_probability = 0.F;     ///< two standing people stand shoulder to shoulder
+  float contact_probability = 0.F;    ///< people touch: contact_pair.h
   float bed_probability = 0.6F;       ///< a lying person has a bed or sofa rather than the floor
   float soft_probability = 0.F;       ///< cushions swell around a person who sits on a sofa or lies on a bed
   float soft_depth_m = 0.08F;         ///< greatest swell of those
