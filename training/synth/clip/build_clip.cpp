@@ -87,7 +87,7 @@ class Builder {
       plan_of_.push_back(i);
     }
     SceneOptions still = scene_;
-    still.load_probability = 0.F;  // it would stay where it is while the hands move on
+    still.load_probability = still.contact_probability = 0.F;  // hands move on
     groups_ = make_groups(still, sitters_, random_);
     stage_ = place_people(scene_, placement_, ground_.view.camera, sitters_, groups_, random_);
     if (stage_.groups.empty()) hold_camera();
