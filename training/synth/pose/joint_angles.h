@@ -90,9 +90,12 @@ Pose pose_of(const BodyAngles& angles);
 /// Returns the angles of a pose's arm, the inverse of `pose_of`. Angles of the clavicle are returned as 0.
 ArmAngles arm_angles(const Pose& pose, bool left);
 
-/// Returns whether the arm stays within the ranges. Two degrees of tolerance allow for rounding and for interpolation
-/// between two measurements.
+/// Returns whether the arm stays within the ranges, with two degrees of tolerance.
 bool arm_in_range(const ArmAngles& arm);
+
+/// The same for a leg.
+LegAngles leg_angles(const Pose& pose, bool left);
+bool leg_in_range(const LegAngles& leg);
 
 /// Sets upper arm and forearm, without moving clavicles or trunk, such that the wrist of a person of standard
 /// proportions (stick_figure()) reaches `wrist_m`, or comes as near as the arm's length and the elbow allow.
@@ -102,5 +105,16 @@ void reach(Pose& pose, bool left, const Eigen::Vector3f& wrist_m, const Eigen::V
 
 /// Sets the hand's angles relative to the forearm, in degrees as in ArmAngles.
 void set_hand(Pose& pose, bool left, float pronation, float wrist, float ulnar);
+
+/// Turns the hand such that its fingers point along `fingers` and its palm faces `palm`, as far as forearm and wrist
+/// allow. Both are directions in the frame of the stick figure and not parallel.
+void point_hand(Pose& pose, bool left, const Eigen::Vector3f& fingers, const Eigen::Vector3f& palm);
+
+/// Sets thigh and shin such that the ankle of a person of standard proportions reaches `ankle_m`, or comes as near as
+/// the leg allows, as reach() does for the wrist. The foot keeps its angle to the shin.
+void place_ankle(Pose& pose, bool left, const Eigen::Vector3f& ankle_m, const Eigen::Vector3f& knee_towards);
+
+/// Bends the ankle, as far as it can, such that the foot rises to its toes by so many degrees; 0 is a level sole.
+void slope_foot(Pose& pose, bool left, float rise_deg);
 
 }  // namespace vesalius::synth

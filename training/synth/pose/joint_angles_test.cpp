@@ -140,5 +140,57 @@ TEST(Reach, StretchesTheArmTowardsADistantGoal) {
   }
 }
 
+TEST(LegAngles, AreThoseOfThePose) {
+  Random random(3);
+  const auto in = [&](const JointRange& r) { return float(random.uniform(r.low, r.high)); };
+  for (int i = 0; i < 50; ++i) {
+    BodyAngles angles;
+    for (LegAngles& leg : angles.legs) {
+      leg = {in(range::kHipFlexion), in(range::kHipAbduction), in(range::kHipExternal), in(range::kKnee),
+             in(range::kAnkle)};
+    }
+    const Pose pose = pose_of(angles);
+    for (const bool left : {true, false}) {
+      const LegAngles found = leg_angles(pose, left), &given = angles.legs[left ? 0 : 1];
+      EXPECT_NEAR(found.flexion, given.flexion, 0.05F);
+      EXPECT_NEAR(found.abduction, given.abduction, 0.05F);
+      EXPECT_NEAR(found.external, given.external, 0.05F);
+      EXPECT_NEAR(found.knee, given.knee, 0.05F);
+      EXPECT_NEAR(found.ankle, given.ankle, 0.05F);
+      EXPECT_TRUE(leg_in_range(found));
+    }
+  }
+  EXPECT_FALSE(leg_in_range({.knee = 160.F}));
+  EXPECT_FALSE(leg_in_range({.flexion = -40.F}));
+}
+
+TEST(PlaceAnkle, ReachesAPointWithTheKneeToTheFront) {
+  for (const bool left : {true, false}) {
+    Pose pose = pose_of({});
+    const Vector3f ankle(left ? 0.15F : -0.15F, -0.6F, 0.2F);
+    place_ankle(pose, left, ankle, Vector3f::UnitZ());
+    slope_foot(pose, left, 0.F);
+    const StickFigure figure = stick_figure(pose);
+    EXPECT_LT((figure.head_of(left ? Bone::l_foot : Bone::r_foot) - ankle).norm(), 1e-3F);
+    EXPECT_GT(figure.head_of(left ? Bone::l_shin : Bone::r_shin).z(), 0.2F);
+    EXPECT_NEAR(direction(pose, left ? Bone::l_foot : Bone::r_foot).y(), 0.F, 1e-3F) << "a level sole";
+    EXPECT_TRUE(leg_in_range(leg_angles(pose, left)));
+  }
+}
+
+TEST(PointHand, TurnsFingersAndPalmAsFarAsTheWristAllows) {
+  for (const bool left : {true, false}) {
+    BodyAngles angles;
+    for (ArmAngles& arm : angles.arms) arm = {.elevation = 20.F, .plane = 90.F, .elbow = 70.F};
+    Pose pose = pose_of(angles);
+    const Vector3f fingers(left ? -0.3F : 0.3F, 0.F, 1.F);
+    point_hand(pose, left, fingers, -Vector3f::UnitY());
+    EXPECT_GT(direction(pose, left ? Bone::l_hand : Bone::r_hand).dot(fingers.normalized()), 0.98F);
+    EXPECT_GT(-palm(pose, left).y(), 0.95F);
+    point_hand(pose, left, -fingers, Vector3f::UnitY());
+    EXPECT_TRUE(arm_in_range(arm_angles(pose, left))) << "as far as it goes";
+  }
+}
+
 }  // namespace
 }  // namespace vesalius::synth

@@ -13,7 +13,12 @@ Posture classify_posture(const Pose& pose);
 /// proportions with rounded shapes. It is 0 or less if nothing touches. Limbs that meet in a joint are not compared.
 float self_overlap_m(const Pose& pose);
 
-/// Returns whether the body intersects itself by more than a touch, 30 mm.
-bool intersects_itself(const Pose& pose);
+/// How deep limbs may overlap: flesh yields and bodies differ, and hands on hips, crossed arms and legs touch.
+inline constexpr float kTouch_m = 0.03F;
+
+/// Returns whether limbs overlap by more than a touch. `touch_m` is what is allowed where people press limbs together:
+/// arms against trunk, thighs and each other, hands and forearms against the head, thighs against each other and the
+/// trunk. Elsewhere it is 30 mm.
+bool intersects_itself(const Pose& pose, float touch_m = kTouch_m);
 
 }  // namespace vesalius::synth

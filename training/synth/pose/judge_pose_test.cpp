@@ -113,6 +113,19 @@ TEST(SelfContact, GrowsWithDepthAndIsTheSameInAMirror) {
   }
 }
 
+TEST(SelfContact, AllowsADeeperTouchOnlyWherePeoplePressLimbsTogether) {
+  const Pose on_chest = with_hand_at({-0.2F, -0.3F, 0.10F});
+  const float overlap = self_overlap_m(on_chest);
+  ASSERT_GT(overlap, kTouch_m);
+  EXPECT_TRUE(intersects_itself(on_chest));
+  EXPECT_TRUE(intersects_itself(on_chest, overlap - 0.002F));
+  EXPECT_FALSE(intersects_itself(on_chest, overlap + 0.002F));
+  BodyAngles shins;
+  for (LegAngles& leg : shins.legs) leg = {.flexion = 90.F, .external = 30.F, .knee = 100.F};
+  ASSERT_TRUE(intersects_itself(pose_of(shins)));
+  EXPECT_TRUE(intersects_itself(pose_of(shins), 0.1F)) << "shins are hard";
+}
+
 }  // namespace
 
 }  // namespace vesalius::synth
