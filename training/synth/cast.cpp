@@ -63,9 +63,9 @@ const Cast::Dressed& Cast::person(std::size_t k) const {
 SampledPose Cast::draw_pose(Random& random) const {
   const PoseOptions& o = recipe_.pose;
   if (!captured_.empty() && random.uniform() < o.captured) {
-    return synth::draw_pose(captured_, o.mixed, o.mirrored, random);
+    return synth::draw_pose(captured_, o.mixed, o.mirrored, random, touch_m(o));
   }
-  SampledPose drawn = sample_pose(o.sampler, random);
+  SampledPose drawn = sample_pose(o.sampler, random, touch_m(o));
   if (random.uniform() < o.mirrored) drawn.pose = mirrored(drawn.pose);
   return drawn;
 }

@@ -145,7 +145,7 @@ struct ClipGenerator::State : Studio {
     constexpr int kTries = 40;
     std::vector<Pose> poses;
     for (int i = 0; i < kTries && int(poses.size()) < count; ++i) {
-      const SampledPose drawn = sample_pose(recipe.pose.sampler, random);
+      const SampledPose drawn = sample_pose(recipe.pose.sampler, random, touch_m(recipe.pose));
       if (drawn.posture == posture) poses.push_back(mirrors(random) ? mirrored(drawn.pose) : drawn.pose);
     }
     return poses;

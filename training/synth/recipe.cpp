@@ -54,6 +54,10 @@ void visit(const std::string& prefix, PoseOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "include", o.include,
                  {"", 0, 0, "Motions whose description has one of these words, separated by commas; empty: all."});
   visitor.option(prefix + "exclude", o.exclude, {"", 0, 0, "Motions whose description has one of these are left out."});
+  visitor.option(prefix + "touch", o.touch_mm,
+                 {"mm", 0, 100,
+                  "How deep limbs may overlap where people press them together: hands and forearms against the body, "
+                  "thighs. Elsewhere it is 30."});
   visit_options(prefix + "library.", o.library, visitor);
   visit_options(prefix + "sampler.", o.sampler, visitor);
 }
@@ -121,6 +125,8 @@ bool asks_for_motions(const PoseOptions& options) {
   return options.captured > 0.F &&
          (options.captured != usual.captured || options.include != usual.include || options.exclude != usual.exclude);
 }
+
+float touch_m(const PoseOptions& options) { return options.touch_mm / 1000.F; }
 
 MotionChoice motion_choice(const PoseOptions& options) {
   return {.include = words_of(options.include), .exclude = words_of(options.exclude)};

@@ -35,6 +35,7 @@ struct PoseOptions {
   float mirrored = 0.5F;  ///< share of mirrored poses
   std::string include;    ///< words separated by commas; a motion's description must have one; empty takes all
   std::string exclude = default_exclusions();  ///< words that a description must not have
+  float touch_mm = 30.F;  ///< how deep limbs may overlap where people press them together; see intersects_itself()
   PoseLibraryOptions library;
   PoseSamplerOptions sampler;
 
@@ -82,6 +83,9 @@ Recipe checked(const Recipe& recipe);
 /// Returns whether a recipe requires captured poses. It does if it states a share of them other than the default or
 /// chooses motions; its frames cannot be made without motions. The default recipe uses captured poses if there are any.
 bool asks_for_motions(const PoseOptions& options);
+
+/// Returns how deep pressed limbs may overlap, in metres.
+float touch_m(const PoseOptions& options);
 
 /// Returns the choice of motions for a recipe's captured poses.
 MotionChoice motion_choice(const PoseOptions& options);

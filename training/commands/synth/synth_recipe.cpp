@@ -141,7 +141,8 @@ class Loader {
     motions = synth::choose_motions(motions, synth::motion_choice(recipe.pose));
     if (motions.empty())
       throw Error("no motion is left: expected .bvh or .amc files that pose.include and pose.exclude admit");
-    synth::PoseLibrary library = synth::load_pose_library(motions, read, recipe.pose.library);
+    synth::PoseLibrary library =
+        synth::load_pose_library(motions, read, recipe.pose.library, synth::touch_m(recipe.pose));
     for (const std::string& line : library.skipped) loaded.notes.push_back(line);
     loaded.assets.captured = std::move(library.poses);
     if (!places_.movements) return;
@@ -182,6 +183,23 @@ std::string full_recipe(synth::Recipe recipe, const LoadedAssets& loaded) {
                                  VESALIUS_VERSION, loaded.sum);
   for (const std::string& line : loaded.stand_ins) text += fmt::format("# {}\n", line);
   return text;
+}
+
+std::string pose_counts(const synth::PoseOptions& options, const synth::BodiesAndMotions& assets) {
+  constexpr int kDraws = 10000;
+  std::vector<std::string> counts;
+  if (!assets.captured.empty()) {
+    counts.push_back(fmt::format("{} captured ({})", assets.captured.size(), synth::posture_counts(assets.captured)));
+  }
+  if (assets.captured.empty() || options.captured < 1.F) {
+    std::vector<synth::SampledPose> drawn;
+    Random random(1);
+    for (int i = 0; i < kDraws; ++i) {
+      drawn.push_back(synth::sample_pose(options.sampler, random, synth::touch_m(options)));
+    }
+    counts.push_back(fmt::format("of {} sampled {}", kDraws, synth::posture_counts(drawn)));
+  }
+  return fmt::format("poses: {}", fmt::join(counts, "; "));
 }
 
 LoadedAssets load_assets(const synth::Recipe& recipe, const AssetPlaces& places) {

@@ -41,6 +41,9 @@ struct AssetPlaces {
 /// package that the recipe requires, or a file that cannot be used.
 LoadedAssets load_assets(const synth::Recipe& recipe, const AssetPlaces& places);
 
+/// Returns a line that says how many captured poses there are of each posture, and how many of 10000 sampled ones.
+std::string pose_counts(const synth::PoseOptions& options, const synth::BodiesAndMotions& assets);
+
 /// Returns the recipe and the digest of its assets as text. Anyone with the same files gets the same frames from it.
 std::string full_recipe(synth::Recipe recipe, const LoadedAssets& loaded);
 

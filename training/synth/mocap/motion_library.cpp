@@ -148,7 +148,7 @@ void visit_options(const std::string& prefix, PoseLibraryOptions& options, Optio
 }
 
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
-                              const PoseLibraryOptions& options) {
+                              const PoseLibraryOptions& options, float touch_m) {
   PoseLibraryOptions checked = options;
   RangeCheck range;
   visit_options("", checked, range);
@@ -162,7 +162,7 @@ PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText&
       const std::vector<Pose> all = retarget(recorded, find_convention(recorded, builtin_conventions()));
       const auto step = static_cast<std::size_t>(options.every) * usual_step(recorded.fps);
       for (std::size_t i = 0; i < all.size(); i += step) {
-        if (!hands_twisted(all[i]) && !intersects_itself(all[i])) poses.push_back(all[i]);
+        if (!hands_twisted(all[i]) && !intersects_itself(all[i], touch_m)) poses.push_back(all[i]);
       }
     } catch (const Error& e) {
       library.skipped.emplace_back(e.what());

@@ -26,11 +26,11 @@ struct PoseLibrary {
 
 /// Loads a library of poses. Motions of 45 and more frames a second are reduced to about 30 by taking every nth frame,
 /// beginning with the first (CMU and HDM05 recorded 120, so every 4th). Impossible poses are left out: those in which
-/// the body intersects itself or a marker's error has turned a hand back to front. The others are thinned (section
-/// 4.1.2). A file that cannot be used is skipped and named in `skipped`. Throws Error if all files are skipped, and
-/// UsageError for options out of range.
+/// the body intersects itself (with `touch_m` as in intersects_itself()) or a marker's error has turned a hand back to
+/// front. The others are thinned (section 4.1.2). A file that cannot be used is skipped and named in `skipped`. Throws
+/// Error if all files are skipped, and UsageError for options out of range.
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
-                              const PoseLibraryOptions& options = {});
+                              const PoseLibraryOptions& options = {}, float touch_m = kTouch_m);
 
 /// What people do in clips, taken from recorded motions at about 30 frames a second. Recordings without any of it, such
 /// as jumps, and those with a marker's error are in none of the lists.

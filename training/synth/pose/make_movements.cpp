@@ -27,8 +27,6 @@ Vector2f ankles_of(const Pose& pose) {
 
 float smooth(float share) { return share * share * (3.F - 2.F * share); }
 
-float eased(float share, bool falling) { return falling ? share * share : smooth(share); }
-
 /// Returns a pose with the trunk bent forwards by an angle more.
 Pose bent_forwards(Pose pose, float by_rad) {
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(0.5F * by_rad, Vector3f::UnitX()));
@@ -54,6 +52,8 @@ bool passes_through(const Pose& from, const Pose& to) {
 }
 
 }  // namespace
+
+float eased(float share, bool falling) { return falling ? share * share : smooth(share); }
 
 Movement move_through(std::span<const KeyPose> keys) {
   Movement movement;

@@ -15,6 +15,9 @@ struct KeyPose {
   bool feet_stay = true;  ///< whether the ankles keep their place on the way to it; otherwise the pelvis does
 };
 
+/// Returns the share of a way that is done after a share of its time.
+float eased(float share, bool falling);
+
 /// Returns a movement through poses, at 30 states a second from the first one's time on. Joints turn the shorter way.
 /// Where feet stay, the middle of the ankles does, and the pelvis goes over the floor by as much as the legs take it.
 /// There must be at least two poses, in the order of their times.

@@ -46,31 +46,6 @@ void raise(ArmAngles& arm, float front, float side) {
   arm.plane = std::atan2(front, side) / kDegree;
 }
 
-/// Returns the vector itself for the left side and its mirror image (x -> -x) for the right.
-Vector3f on_side(const Vector3f& v, bool left) { return left ? v : Vector3f(-v.x(), v.y(), v.z()); }
-
-/// Returns the position of a point that is fixed to a bone, in the stick figure's frame. `offset_m` is the point's
-/// place from the bone's head at rest.
-Vector3f point_on(const Pose& pose, Bone bone, const Vector3f& offset_m) {
-  return stick_figure(pose).head_of(bone) + world_rotations(pose)[index(bone)] * offset_m;
-}
-
-/// Draws a point in a box, metres.
-Vector3f in_box(Random& random, const Vector3f& low, const Vector3f& high) {
-  const float x = between(random, low.x(), high.x()), y = between(random, low.y(), high.y());
-  return {x, y, between(random, low.z(), high.z())};
-}
-
-/// Moves the wrist to a point that is fixed to a bone. The elbow's direction turns with the chest. Both are given for
-/// the left side.
-void reach_point(Pose& pose, bool left, Bone bone, const Vector3f& offset_m, const Vector3f& elbow_towards) {
-  const Vector3f target = point_on(pose, bone, on_side(offset_m, left));
-  const Eigen::Quaternionf chest = world_rotations(pose)[index(Bone::chest)];
-  reach(pose, left, target, chest * on_side(elbow_towards, left));
-}
-
-void set_grip(Pose& pose, bool left, float grip) { (left ? pose.l_grip : pose.r_grip) = grip; }
-
 void fold_behind(Pose& pose, Random& random) {
   const bool left_outside = chance(random, 0.5F);
   const float height = between(random, -0.06F, 0.06F);
@@ -104,6 +79,25 @@ void hold_in_front(Pose& pose, Random& random) {
 float between(Random& random, float low, float high) { return float(random.uniform(low, high)); }
 
 bool chance(Random& random, float probability) { return random.uniform() < probability; }
+
+Vector3f on_side(const Vector3f& v, bool left) { return left ? v : Vector3f(-v.x(), v.y(), v.z()); }
+
+Vector3f point_on(const Pose& pose, Bone bone, const Vector3f& offset_m) {
+  return stick_figure(pose).head_of(bone) + world_rotations(pose)[index(bone)] * offset_m;
+}
+
+Vector3f in_box(Random& random, const Vector3f& low, const Vector3f& high) {
+  const float x = between(random, low.x(), high.x()), y = between(random, low.y(), high.y());
+  return {x, y, between(random, low.z(), high.z())};
+}
+
+void reach_point(Pose& pose, bool left, Bone bone, const Vector3f& offset_m, const Vector3f& elbow_towards) {
+  const Vector3f target = point_on(pose, bone, on_side(offset_m, left));
+  const Eigen::Quaternionf chest = world_rotations(pose)[index(Bone::chest)];
+  reach(pose, left, target, chest * on_side(elbow_towards, left));
+}
+
+void set_grip(Pose& pose, bool left, float grip) { (left ? pose.l_grip : pose.r_grip) = grip; }
 
 void cross_arms(Pose& pose, Random& random) {
   const bool left_outside = chance(random, 0.5F);

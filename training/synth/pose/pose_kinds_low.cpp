@@ -8,12 +8,6 @@ namespace {
 
 constexpr float kDegree = 3.14159265F / 180.F;
 
-/// Returns the bend of the knee that puts the foot as low as the seat, for a thigh that rises by so many degrees. Shin
-/// and thigh are about equally long, and hips are some 7 % of that length higher above the ground than ankles.
-float knee_for_rise(float rise) {
-  return rise + std::asin(std::clamp(std::sin(rise * kDegree) + 0.07F, -1.F, 1.F)) / kDegree;
-}
-
 /// Places the hands of a sitting person: in the lap, on a table or armrests, at a phone or the face, or crossed.
 void seat_hands(Pose& pose, Random& random) {
   const std::uint32_t what = random.below(12);
@@ -80,6 +74,30 @@ BodyAngles seat_angles(Random& random) {
   return angles;
 }
 
+Pose on_all_fours(Random& random) {
+  BodyAngles angles;
+  angles.pitch = between(random, 65.F, 85.F);
+  angles.trunk.flexion = between(random, -5.F, 20.F);
+  angles.neck = {between(random, -45.F, 10.F), 0.F, between(random, -30.F, 30.F)};
+  const float chest = angles.pitch + angles.trunk.flexion;
+  for (std::size_t side = 0; side < 2; ++side) {
+    LegAngles& leg = angles.legs[side];
+    const float thigh = between(random, -15.F, 25.F);
+    leg.flexion = angles.pitch + thigh;
+    leg.abduction = between(random, 0.F, 12.F);
+    rest_on_knee(leg, thigh, false);
+    ArmAngles& arm = angles.arms[side];
+    arm = hanging_arm(random, chest + between(random, -15.F, 25.F), between(random, 0.F, 15.F));
+    arm.elbow = between(random, 0.F, 20.F);
+    arm.pronation = between(random, 40.F, 80.F);
+    arm.wrist = -70.F;
+    angles.grip[side] = 0.F;
+  }
+  return pose_of(within_range(angles));
+}
+
+}  // namespace
+
 BodyAngles on_back(Random& random) {
   BodyAngles angles;
   angles.pitch = between(random, -95.F, -80.F);
@@ -98,6 +116,43 @@ BodyAngles on_back(Random& random) {
     angles.grip[side] = between(random, 0.F, 0.6F);
   }
   return angles;
+}
+
+float knee_for_rise(float rise) {
+  return rise + std::asin(std::clamp(std::sin(rise * kDegree) + 0.07F, -1.F, 1.F)) / kDegree;
+}
+
+void rest_on_knee(LegAngles& leg, float thigh, bool on_toes) {
+  leg.knee = 90.F + thigh + (on_toes ? 17.F : 12.F);
+  leg.ankle = on_toes ? 25.F : -50.F;
+}
+
+Pose sitting(Random& random) {
+  BodyAngles angles = seat_angles(random);
+  if (chance(random, 0.3F)) cross_legs(angles, random);
+  Pose pose = pose_of(within_range(angles));
+  seat_hands(pose, random);
+  return pose;
+}
+
+Pose floor_sitting(Random& random) {
+  BodyAngles angles = seat_angles(random);
+  angles.pitch = between(random, -25.F, 5.F);
+  angles.trunk.flexion = between(random, 10.F, 40.F);
+  const bool tailor = chance(random, 0.4F);
+  for (LegAngles& leg : angles.legs) {
+    const float rise = tailor ? between(random, 8.F, 25.F) : between(random, 0.F, 50.F);
+    leg.flexion = angles.pitch + 90.F + rise;
+    leg.abduction = tailor ? between(random, 38.F, 45.F) : between(random, 0.F, 15.F);
+    leg.external = tailor ? 45.F : between(random, -5.F, 15.F);
+    leg.knee = tailor ? between(random, 115.F, 135.F) : knee_for_rise(rise);
+    leg.ankle = tailor ? -30.F : between(random, -40.F, 0.F);
+  }
+  Pose pose = pose_of(within_range(angles));
+  if (chance(random, 0.5F)) {
+    for (const bool left : {true, false}) hand_on_thigh(pose, left, random);
+  }
+  return pose;
 }
 
 Pose lie_on_back(Random& random) {
@@ -151,65 +206,6 @@ Pose lie_on_front(Random& random) {
     arm.elbow = between(random, 60.F, 130.F);
   }
   return pose_of(within_range(angles));
-}
-
-/// Sets the shin of a kneeling person whose thigh is so many degrees to the front of vertical. The ankle is higher than
-/// the knee by the height of the foot, which is stretched backwards or stands on its toes.
-void rest_on_knee(LegAngles& leg, float thigh, bool on_toes) {
-  leg.knee = 90.F + thigh + (on_toes ? 17.F : 12.F);
-  leg.ankle = on_toes ? 25.F : -50.F;
-}
-
-Pose on_all_fours(Random& random) {
-  BodyAngles angles;
-  angles.pitch = between(random, 65.F, 85.F);
-  angles.trunk.flexion = between(random, -5.F, 20.F);
-  angles.neck = {between(random, -45.F, 10.F), 0.F, between(random, -30.F, 30.F)};
-  const float chest = angles.pitch + angles.trunk.flexion;
-  for (std::size_t side = 0; side < 2; ++side) {
-    LegAngles& leg = angles.legs[side];
-    const float thigh = between(random, -15.F, 25.F);
-    leg.flexion = angles.pitch + thigh;
-    leg.abduction = between(random, 0.F, 12.F);
-    rest_on_knee(leg, thigh, false);
-    ArmAngles& arm = angles.arms[side];
-    arm = hanging_arm(random, chest + between(random, -15.F, 25.F), between(random, 0.F, 15.F));
-    arm.elbow = between(random, 0.F, 20.F);
-    arm.pronation = between(random, 40.F, 80.F);
-    arm.wrist = -70.F;
-    angles.grip[side] = 0.F;
-  }
-  return pose_of(within_range(angles));
-}
-
-}  // namespace
-
-Pose sitting(Random& random) {
-  BodyAngles angles = seat_angles(random);
-  if (chance(random, 0.3F)) cross_legs(angles, random);
-  Pose pose = pose_of(within_range(angles));
-  seat_hands(pose, random);
-  return pose;
-}
-
-Pose floor_sitting(Random& random) {
-  BodyAngles angles = seat_angles(random);
-  angles.pitch = between(random, -25.F, 5.F);
-  angles.trunk.flexion = between(random, 10.F, 40.F);
-  const bool tailor = chance(random, 0.4F);
-  for (LegAngles& leg : angles.legs) {
-    const float rise = tailor ? between(random, 8.F, 25.F) : between(random, 0.F, 50.F);
-    leg.flexion = angles.pitch + 90.F + rise;
-    leg.abduction = tailor ? between(random, 38.F, 45.F) : between(random, 0.F, 15.F);
-    leg.external = tailor ? 45.F : between(random, -5.F, 15.F);
-    leg.knee = tailor ? between(random, 115.F, 135.F) : knee_for_rise(rise);
-    leg.ankle = tailor ? -30.F : between(random, -40.F, 0.F);
-  }
-  Pose pose = pose_of(within_range(angles));
-  if (chance(random, 0.5F)) {
-    for (const bool left : {true, false}) hand_on_thigh(pose, left, random);
-  }
-  return pose;
 }
 
 Pose lying(Random& random) {

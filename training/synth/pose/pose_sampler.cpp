@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <optional>
 
-#include "synth/pose/judge_pose.h"
+#include "synth/pose/floor_contact.h"
 #include "synth/pose/pose_kinds.h"
 #include "vesalius/error.h"
 
@@ -21,30 +22,63 @@ constexpr int kTries = 300;
 struct Kind {
   const char* name;
   float PoseSamplerOptions::*weight;
-  Pose (*draw)(Random&);
-  std::optional<Posture> posture;  ///< empty if it follows from the pose
+  std::optional<Pose> (*draw)(Random&);  ///< nothing if a draw does not hold
+  std::optional<Posture> posture;        ///< empty if it follows from the pose
   const char* help;
+  bool to_floor = false;  ///< whether people are on their way to or from the floor, without a seat
 };
+
+template <Pose (*kDraw)(Random&)>
+std::optional<Pose> always(Random& random) {
+  return kDraw(random);
+}
 
 using P = Posture;
 using O = PoseSamplerOptions;
-constexpr std::array<Kind, 16> kKinds{{
-    {"idle", &O::idle, kinds::idle, P::standing, "Weight of people who stand about."},
-    {"walking", &O::walking, kinds::walking, P::standing, "Weight of people who walk."},
-    {"reaching", &O::reaching, kinds::reaching, P::standing, "Weight of people who reach for something or point."},
-    {"waving", &O::waving, kinds::waving, P::standing, "Weight of people who wave."},
-    {"bending", &O::bending, kinds::bending, P::standing, "Weight of people who bend down."},
-    {"arms-crossed", &O::arms_crossed, kinds::arms_crossed, P::standing, "Weight of people with crossed arms."},
-    {"arms-behind", &O::arms_behind, kinds::arms_behind, P::standing, "Weight of people with their hands behind them."},
-    {"hands-on-hips", &O::hands_on_hips, kinds::hands_on_hips, P::standing, "Weight of people with hands on hips."},
-    {"carrying", &O::carrying, kinds::carrying, P::standing, "Weight of people who carry something."},
-    {"phone", &O::phone, kinds::phone, P::standing, "Weight of people with a telephone at the ear or in the hand."},
-    {"sitting", &O::sitting, kinds::sitting, P::sitting, "Weight of people who sit on chairs and sofas."},
-    {"floor-sitting", &O::floor_sitting, kinds::floor_sitting, P::sitting, "Weight of people who sit on the floor."},
-    {"lying", &O::lying, kinds::lying, P::lying, "Weight of people who lie on back, side or front."},
-    {"kneeling", &O::kneeling, kinds::kneeling, P::kneeling, "Weight of people on one knee, both, or all fours."},
-    {"squatting", &O::squatting, kinds::squatting, P::standing, "Weight of people who squat."},
-    {"any", &O::any, kinds::any, std::nullopt, "Weight of joints drawn uniformly from all that they can do."},
+constexpr std::array<Kind, 28> kKinds{{
+    {"idle", &O::idle, always<kinds::idle>, P::standing, "Weight of people who stand about."},
+    {"walking", &O::walking, always<kinds::walking>, P::standing, "Weight of people who walk."},
+    {"reaching", &O::reaching, always<kinds::reaching>, P::standing,
+     "Weight of people who reach for something or point."},
+    {"waving", &O::waving, always<kinds::waving>, P::standing, "Weight of people who wave."},
+    {"bending", &O::bending, always<kinds::bending>, P::standing, "Weight of people who bend down."},
+    {"arms-crossed", &O::arms_crossed, always<kinds::arms_crossed>, P::standing, "Weight of people with crossed arms."},
+    {"arms-behind", &O::arms_behind, always<kinds::arms_behind>, P::standing,
+     "Weight of people with their hands behind them."},
+    {"hands-on-hips", &O::hands_on_hips, always<kinds::hands_on_hips>, P::standing,
+     "Weight of people with hands on hips."},
+    {"carrying", &O::carrying, always<kinds::carrying>, P::standing, "Weight of people who carry something."},
+    {"phone", &O::phone, always<kinds::phone>, P::standing,
+     "Weight of people with a telephone at the ear or in the hand."},
+    {"sitting", &O::sitting, always<kinds::sitting>, P::sitting, "Weight of people who sit on chairs and sofas."},
+    {"floor-sitting", &O::floor_sitting, always<kinds::floor_sitting>, P::sitting,
+     "Weight of people who sit on the floor."},
+    {"lying", &O::lying, always<kinds::lying>, P::lying, "Weight of people who lie on back, side or front."},
+    {"kneeling", &O::kneeling, always<kinds::kneeling>, P::kneeling,
+     "Weight of people on one knee, both, or all fours."},
+    {"squatting", &O::squatting, always<kinds::squatting>, P::standing, "Weight of people who squat."},
+    {"crawling", &O::crawling, kinds::crawling, P::kneeling, "Weight of people who crawl on hands or forearms."},
+    {"getting-up", &O::getting_up, kinds::getting_up, std::nullopt,
+     "Weight of moments between lying, sitting on the floor, kneeling, squatting and standing.", true},
+    {"turning-over", &O::turning_over, kinds::turning_over, P::lying,
+     "Weight of moments between lying on back, side and front."},
+    {"falling", &O::falling, kinds::falling, std::nullopt, "Weight of moments of falls.", true},
+    {"sitting-up", &O::sitting_up, kinds::sitting_up, std::nullopt,
+     "Weight of people on the floor who lean on hands or an elbow, stretch the legs, hug their knees or sit sideways."},
+    {"lying-varied", &O::lying_varied, kinds::lying_varied, P::lying,
+     "Weight of people who lie curled up, arms over the head, legs crossed, a knee drawn up, on the elbows or half on "
+     "the front."},
+    {"picking-up", &O::picking_up, kinds::picking_up, std::nullopt,
+     "Weight of people who pick things up, tie shoes or look under something."},
+    {"drinking", &O::drinking, always<kinds::drinking>, std::nullopt, "Weight of people who hold a cup or drink."},
+    {"handing", &O::handing, always<kinds::handing>, std::nullopt, "Weight of people who hand something over."},
+    {"hands-together", &O::hands_together, always<kinds::hands_together>, std::nullopt,
+     "Weight of people with hands in the lap, before the belly, clasped, or in prayer."},
+    {"hands-on-self", &O::hands_on_self, always<kinds::touching_oneself>, std::nullopt,
+     "Weight of people with folded arms or hands on head, face, neck, chest or knees."},
+    {"leaning", &O::leaning, always<kinds::leaning>, std::nullopt,
+     "Weight of people who lean with both hands on a table, or with their elbows on the knees."},
+    {"any", &O::any, always<kinds::any>, std::nullopt, "Weight of joints drawn uniformly from all that they can do."},
 }};
 
 const Kind& draw_kind(const PoseSamplerOptions& options, Random& random) {
@@ -68,8 +102,18 @@ const Kind& draw_kind(const PoseSamplerOptions& options, Random& random) {
   return *last;
 }
 
-bool possible(const Pose& pose) {
-  return arm_in_range(arm_angles(pose, true)) && arm_in_range(arm_angles(pose, false)) && !intersects_itself(pose);
+bool possible(const Pose& pose, float touch_m) {
+  return arm_in_range(arm_angles(pose, true)) && arm_in_range(arm_angles(pose, false)) &&
+         !intersects_itself(pose, touch_m);
+}
+
+/// Returns the posture of a pose of a kind. Those on the way to the floor who seem to sit but are not down yet are on
+/// their feet: no seat belongs under them.
+Posture posture_of(const Kind& kind, const Pose& pose) {
+  constexpr float kLow_m = 0.1F;
+  const Posture posture = classify_posture(pose);
+  if (posture != Posture::sitting || !kind.to_floor) return posture;
+  return *skin_height_m(pose, Bone::pelvis) > kLow_m ? Posture::standing : posture;
 }
 
 void take(Pose& pose, const Pose& other, std::initializer_list<Bone> bones) {
@@ -81,14 +125,14 @@ Limbs draw_limbs(Random& random) {
   return {(bits & 1U) != 0, (bits & 2U) != 0, (bits & 4U) != 0, (bits & 8U) != 0};
 }
 
-SampledPose draw_mixed(std::span<const SampledPose> poses, const SampledPose& base, Random& random) {
+SampledPose draw_mixed(std::span<const SampledPose> poses, const SampledPose& base, float touch_m, Random& random) {
   constexpr int kMixes = 20;
   for (int i = 0; i < kMixes; ++i) {
     const SampledPose& other = poses[random.below(static_cast<std::uint32_t>(poses.size()))];
     const Limbs limbs = draw_limbs(random);
     if (other.posture != base.posture) continue;
     const Pose mixed = mix_limbs(base.pose, other.pose, limbs);
-    if (!intersects_itself(mixed) && classify_posture(mixed) == base.posture) return {mixed, base.posture};
+    if (!intersects_itself(mixed, touch_m) && classify_posture(mixed) == base.posture) return {mixed, base.posture};
   }
   return base;
 }
@@ -107,13 +151,13 @@ PoseSamplerOptions only(float PoseSamplerOptions::*kind) {
   return options;
 }
 
-SampledPose sample_pose(const PoseSamplerOptions& options, Random& random) {
+SampledPose sample_pose(const PoseSamplerOptions& options, Random& random, float touch_m) {
   const Kind& kind = draw_kind(options, random);
   for (int i = 0; i < kTries; ++i) {
-    const Pose pose = kind.draw(random);
-    if (!possible(pose)) continue;
-    const Posture posture = classify_posture(pose);
-    if (!kind.posture || posture == *kind.posture) return {pose, posture};
+    const std::optional<Pose> pose = kind.draw(random);
+    if (!pose || !possible(*pose, touch_m)) continue;
+    const Posture posture = posture_of(kind, *pose);
+    if (!kind.posture || posture == *kind.posture) return {*pose, posture};
   }
   return {pose_of({}), Posture::standing};
 }
@@ -136,14 +180,24 @@ Pose mix_limbs(const Pose& pose, const Pose& other, const Limbs& limbs) {
   return out;
 }
 
-SampledPose draw_pose(std::span<const SampledPose> poses, float mixed, float mirrored_share, Random& random) {
+SampledPose draw_pose(std::span<const SampledPose> poses, float mixed, float mirrored_share, Random& random,
+                      float touch_m) {
   if (poses.empty()) throw UsageError("draw_pose: expected at least one pose");
   const SampledPose& base = poses[random.below(static_cast<std::uint32_t>(poses.size()))];
-  SampledPose drawn = random.uniform() < mixed ? draw_mixed(poses, base, random) : base;
+  SampledPose drawn = random.uniform() < mixed ? draw_mixed(poses, base, touch_m, random) : base;
   drawn.pose.l_grip = float(random.uniform(0.0, 0.9));
   drawn.pose.r_grip = float(random.uniform(0.0, 0.9));
   if (random.uniform() < mirrored_share) drawn.pose = mirrored(drawn.pose);
   return drawn;
+}
+
+std::string posture_counts(std::span<const SampledPose> poses) {
+  std::string text;
+  for (const Posture posture : {Posture::standing, Posture::sitting, Posture::lying, Posture::kneeling}) {
+    const auto count = std::ranges::count(poses, posture, &SampledPose::posture);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", to_string(posture), count);
+  }
+  return text;
 }
 
 }  // namespace vesalius::synth

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "synth/pose/judge_pose.h"
 #include "synth/pose/pose.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/random.h"
@@ -34,6 +35,19 @@ struct PoseSamplerOptions {
   float kneeling = 0.4F;
   float squatting = 0.3F;
   float any = 0.6F;
+  // The following are off unless a recipe asks for them, so that recipes written before give the same poses.
+  float crawling = 0.F;
+  float getting_up = 0.F;
+  float turning_over = 0.F;
+  float falling = 0.F;
+  float sitting_up = 0.F;
+  float lying_varied = 0.F;
+  float picking_up = 0.F;
+  float drinking = 0.F;
+  float handing = 0.F;
+  float hands_together = 0.F;
+  float hands_on_self = 0.F;
+  float leaning = 0.F;
 };
 
 void visit_options(const std::string& prefix, PoseSamplerOptions& options, OptionVisitor& visitor);
@@ -42,8 +56,8 @@ void visit_options(const std::string& prefix, PoseSamplerOptions& options, Optio
 PoseSamplerOptions only(float PoseSamplerOptions::*kind);
 
 /// Draws a pose without any files. The same options and state of `random` give the same pose. Throws UsageError if no
-/// weight is above 0, or one is not a number from 0 to 1000.
-SampledPose sample_pose(const PoseSamplerOptions& options, Random& random);
+/// weight is above 0, or one is not a number from 0 to 1000. `touch_m` is that of intersects_itself(), here and below.
+SampledPose sample_pose(const PoseSamplerOptions& options, Random& random, float touch_m = kTouch_m);
 
 /// The limbs that one pose can take from another.
 struct Limbs {
@@ -59,6 +73,10 @@ Pose mix_limbs(const Pose& pose, const Pose& other, const Limbs& limbs);
 /// Draws one of the poses. With probability `mixed` some of its limbs come from another pose of the same posture,
 /// unless the body then intersects itself; with probability `mirrored` it is mirrored. Grips are drawn at random
 /// because motion capture does not record fingers. Throws UsageError if there are no poses.
-SampledPose draw_pose(std::span<const SampledPose> poses, float mixed, float mirrored, Random& random);
+SampledPose draw_pose(std::span<const SampledPose> poses, float mixed, float mirrored, Random& random,
+                      float touch_m = kTouch_m);
+
+/// Returns how many of the poses have each posture: "standing 7, sitting 2, lying 1, kneeling 0".
+std::string posture_counts(std::span<const SampledPose> poses);
 
 }  // namespace vesalius::synth

@@ -140,6 +140,45 @@ TEST(PoseSampler, DrawsKindsByTheirWeights) {
   EXPECT_NEAR(lying, 250, 55) << "4 standard deviations";
 }
 
+/// Collects the weights.
+class Weights : public OptionVisitor {
+ public:
+  void option(const std::string& name, float& value, const OptionInfo& /*info*/) override { weights[name] = value; }
+  void option(const std::string& /*name*/, int& /*value*/, const OptionInfo& /*info*/) override {}
+  void option(const std::string& /*name*/, bool& /*value*/, const OptionInfo& /*info*/) override {}
+  void option(const std::string& /*name*/, std::string& /*value*/, const OptionInfo& /*info*/) override {}
+
+  std::map<std::string, float> weights;
+};
+
+TEST(PoseSampler, HasLaterKindsOffSoThatEarlierRecipesGiveTheSamePoses) {
+  PoseSamplerOptions options;
+  Weights visitor;
+  visit_options("", options, visitor);
+  for (const char* later : {"crawling", "getting-up", "turning-over", "falling", "sitting-up", "lying-varied",
+                            "picking-up", "drinking", "handing", "hands-together", "hands-on-self", "leaning"}) {
+    ASSERT_TRUE(visitor.weights.contains(later)) << later;
+    EXPECT_EQ(visitor.weights[later], 0.F) << later;
+  }
+  EXPECT_EQ(visitor.weights.size(), 28U) << "another kind belongs above, with weight 0";
+}
+
+TEST(PoseSampler, TakesPosesThatTouchDeeperIfAllowed) {
+  constexpr float kDeep_m = 0.06F;
+  Random random(6);
+  std::vector<SampledPose> poses;
+  for (int i = 0; i < 200; ++i) poses.push_back(sample_pose(only("hands-on-self"), random, kDeep_m));
+  const auto deep = [](const SampledPose& p) { return intersects_itself(p.pose); };
+  EXPECT_GT(std::ranges::count_if(poses, deep), 20);
+  for (int i = 0; i < 200; ++i) poses.push_back(draw_pose(poses, 1.F, 0.F, random, kDeep_m));
+  for (const SampledPose& p : poses) EXPECT_FALSE(intersects_itself(p.pose, kDeep_m));
+}
+
+TEST(PoseSampler, CountsPostures) {
+  EXPECT_EQ(posture_counts(sampled("kneeling", 3)), "standing 0, sitting 0, lying 0, kneeling 3");
+  EXPECT_EQ(posture_counts({}), "standing 0, sitting 0, lying 0, kneeling 0");
+}
+
 TEST(PoseSampler, RefusesInvalidWeights) {
   Random random(1);
   PoseSamplerOptions none = only("idle");
