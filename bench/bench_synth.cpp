@@ -2,6 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <iostream>
@@ -154,9 +155,10 @@ std::vector<Pose> motion_poses(std::size_t count, int steps) {
   return poses;
 }
 
+constexpr float kFiveDegrees = 0.0872664626F;
+
 void add_thinning(const std::string& kind, int steps) {
   constexpr std::size_t kPoses = 100000;
-  constexpr float kFiveDegrees = 0.0872664626F;
   const auto poses = std::make_shared<Later<std::vector<Pose>>>([=] { return motion_poses(kPoses, steps); });
   benchmark::RegisterBenchmark(("thin_poses/" + kind).c_str(), [=](benchmark::State& state) {
     const std::vector<Pose>& all = **poses;
@@ -166,11 +168,43 @@ void add_thinning(const std::string& kind, int steps) {
   })->Unit(benchmark::kMillisecond);
 }
 
+using Weight = float PoseSamplerOptions::*;
+
+/// Draws 10000 poses of some kinds, and counts those of some postures that differ by 5 degrees in some joint.
+void add_sampling(const std::string& name, const std::vector<Weight>& kinds, const std::vector<Posture>& postures) {
+  constexpr int kDraws = 10000;
+  PoseSamplerOptions options = only(kinds.front());
+  for (const Weight kind : kinds) options.*kind = 1.F;
+  benchmark::RegisterBenchmark(("sample_pose/" + name).c_str(), [=](benchmark::State& state) {
+    std::vector<Pose> poses;
+    for (auto _ : state) {
+      poses.clear();
+      Random random(kSeed);
+      for (int i = 0; i < kDraws; ++i) {
+        const SampledPose drawn = sample_pose(options, random);
+        if (std::ranges::count(postures, drawn.posture) > 0) poses.push_back(drawn.pose);
+      }
+    }
+    state.counters["kept"] = static_cast<double>(thin_poses(poses, kFiveDegrees).size());
+  })->Unit(benchmark::kMillisecond);
+}
+
+void add_samplings() {
+  using O = PoseSamplerOptions;
+  add_sampling("lying", {&O::lying, &O::lying_varied, &O::turning_over}, {Posture::lying});
+  add_sampling("floor", {&O::floor_sitting, &O::sitting_up, &O::kneeling, &O::crawling, &O::getting_up},
+               {Posture::sitting, Posture::kneeling});
+  add_sampling("bent", {&O::bending, &O::picking_up}, {Posture::standing});
+  add_sampling("seated", {&O::sitting, &O::hands_together, &O::hands_on_self, &O::drinking, &O::leaning},
+               {Posture::sitting});
+}
+
 }  // namespace
 
 void add_synth_benchmarks() {
   add_thinning("motions", 25);
   add_thinning("single", 1);
+  add_samplings();
   add_kind("builtin", std::make_shared<Later<BodiesAndMotions>>([] { return BodiesAndMotions(); }));
   const std::string folder = default_assets_folder();
   for (const char* package : {"makehuman", "mocap"}) {

@@ -156,6 +156,7 @@ void run(const Arguments& arguments) {
       {.folder = arguments.assets, .motions = arguments.motions, .movements = arguments.clip.clip_s.has_value()});
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
+    say(pose_counts(recipe.pose, loaded.assets));
   }
   watch_interrupts();
   if (arguments.cameras > 0) return write_cameras(arguments, recipe, loaded, body);
