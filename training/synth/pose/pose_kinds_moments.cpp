@@ -278,7 +278,7 @@ constexpr std::array<MakeStage, 4> kFromKnees{on_both_knees, on_knee, stooped, s
 /// Returns whether what carries the body at both ends is on the floor, and its weight not so far from there that it
 /// would not get on.
 bool gets_on(const Stage& from, const Stage& to, const Pose& pose) {
-  constexpr float kOnFloor_m = 0.035F, kMomentum_m = 0.1F;
+  constexpr float kOnFloor_m = 0.03F, kMomentum_m = 0.1F;
   for (std::size_t side = 0; side < 2; ++side) {
     const bool left = side == 0;
     if (from.feet[side] && to.feet[side] && *skin_height_m(pose, foot_bone(left)) > kOnFloor_m) return false;
