@@ -94,6 +94,7 @@ bool plant_below(Pose& pose, bool left, const Eigen::Vector3f& off_m, const Eige
 /// Returns the pose after it has settled on the floor (settle()), if it tips by no more than so many degrees and the
 /// legs are within their ranges.
 std::optional<Pose> rested(Pose pose, float most_deg);
+bool legs_in_range(const Pose& pose);
 /// Returns whether hips and chest are near the floor, so that no arm or leg props up somebody who lies.
 bool lies_on_trunk(const Pose& pose);
 /// Returns a hanging arm that is swung by so many degrees to the front and to the side.

@@ -375,8 +375,12 @@ bool lies_on_trunk(const Pose& pose) {
   return *skin_height_m(pose, Bone::pelvis) < kHips_m && *skin_height_m(pose, Bone::chest) < kChest_m;
 }
 
+bool legs_in_range(const Pose& pose) {
+  return leg_in_range(leg_angles(pose, true)) && leg_in_range(leg_angles(pose, false));
+}
+
 std::optional<Pose> rested(Pose pose, float most_deg) {
-  if (!leg_in_range(leg_angles(pose, true)) || !leg_in_range(leg_angles(pose, false))) return std::nullopt;
+  if (!legs_in_range(pose)) return std::nullopt;
   constexpr float kInBalance_m = 0.01F;
   if (settle(pose) > most_deg || out_of_support_m(pose) > kInBalance_m) return std::nullopt;
   return pose;

@@ -159,7 +159,7 @@ Pose hands_on_table_edge(Random& random) {
   const float drop = between(random, 0.42F, 0.55F), ahead = between(random, 0.F, 0.25F),
               apart = between(random, -0.02F, 0.18F);
   for (const bool left : {true, false}) {
-    const Vector3f shoulder = figure.head_of(left ? Bone::l_upper_arm : Bone::r_upper_arm);
+    const Vector3f& shoulder = figure.head_of(left ? Bone::l_upper_arm : Bone::r_upper_arm);
     const Vector3f wrist = shoulder + on_side({apart, 0.F, ahead}, left);
     reach(pose, left, {wrist.x(), figure.head_of(Bone::l_upper_arm).y() - drop, wrist.z()},
           on_side({0.6F, 0.F, -1.F}, left));

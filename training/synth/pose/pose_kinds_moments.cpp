@@ -294,7 +294,7 @@ std::optional<Pose> moment(std::span<const MakeStage> way, Random& random) {
   const std::uint32_t stretch = random.below(static_cast<std::uint32_t>(way.size() - 1));
   const Stage from = way[stretch](left, random), to = way[stretch + 1](left, random);
   const Pose pose = between_stages(from, to, eased(between(random, 0.F, 1.F), false));
-  if (!leg_in_range(leg_angles(pose, true)) || !leg_in_range(leg_angles(pose, false))) return std::nullopt;
+  if (!legs_in_range(pose)) return std::nullopt;
   Pose at_rest = pose;
   const bool rests = settle(at_rest) < kMostTip;
   const Pose& drawn = rests ? at_rest : pose;
@@ -311,6 +311,18 @@ void lift_hands(Pose& pose) {
     wrist.y() = floor + kFlatWrist_m;
     reach(pose, left, wrist, Vector3f::UnitY());
   }
+}
+
+/// Lowers the leg that is nearer to the floor until its heel is there.
+void lower_leg(Pose& pose) {
+  constexpr float kHeel_m = 0.06F;
+  const StickFigure figure = stick_figure(pose);
+  const bool left = figure.head_of(Bone::l_foot).y() < figure.head_of(Bone::r_foot).y();
+  const Bone foot = foot_bone(left), shin = parent(foot);
+  Vector3f ankle = figure.head_of(foot);
+  const Vector3f knee = figure.head_of(shin) - 0.5F * (figure.head_of(parent(shin)) + ankle);
+  ankle.y() = floor_y(pose, false) + kHeel_m;
+  place_ankle(pose, left, ankle, knee);
 }
 
 }  // namespace
@@ -335,8 +347,9 @@ std::optional<Pose> turning_over(Random& random) {
   const Pose side = lie_on_side(random), flat = chance(random, 0.5F) ? lie_on_back(random) : lie_on_front(random);
   Pose pose = between_stages({side}, {flat}, eased(between(random, 0.F, 1.F), false));
   lift_hands(pose);
-  if (settle_lengthwise(pose) > kMostTip || !lies_on_trunk(pose)) return std::nullopt;
-  return pose;
+  if (settle_lengthwise(pose) > kMostTip) return std::nullopt;
+  lower_leg(pose);
+  return lies_on_trunk(pose) && legs_in_range(pose) ? std::optional(pose) : std::nullopt;
 }
 
 std::optional<Pose> falling(Random& random) {
