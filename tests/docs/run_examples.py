@@ -124,6 +124,8 @@ class Wrapper:
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")
+        for name in self.values(words, "--like"):
+            self.place(name, "frames")
         for name in self.values(words, "--data"):
             self.place(name, "labelled")
         for name in self.values(words, "--background"):

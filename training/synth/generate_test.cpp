@@ -104,7 +104,7 @@ TEST(Generate, SeesPointsOfTheTruthWhereAWrongFocalLengthHasThem) {
     }
   }
   EXPECT_GT(seen, 300);
-  EXPECT_GT(own, seen * 2) << own << " of " << seen;
+  EXPECT_GT(own, seen / 2) << own << " of " << seen;
 }
 
 TEST(Generate, MakesStereoErrorsLargerUpToTheGivenFactor) {

@@ -279,7 +279,7 @@ Examples:
   vesalius synth --preview 24 --out look.png
   vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
   vesalius synth --clip 5 --preview 9 --out clip.png
-  vesalius synth --like my_recording/ --out like.toml
+  vesalius synth --like my_recording/ --preset d435 --out like.toml
   vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
   command->callback([arguments, command] {
     if (command->get_subcommands().empty()) run(*arguments);
