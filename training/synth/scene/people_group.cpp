@@ -233,44 +233,75 @@ std::optional<Furniture> make_lying_sofa(const BedFit& fit, float height_m, floa
   return sofa;
 }
 
-PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random) {
+/// A bed or sofa under somebody.
+struct Bed {
+  Furniture piece;
+  GroupMember raised;  ///< who lies or sits on it
+  float height_m = 0.F, width_m = 0.F;
+  bool care = false;  ///< whether it is one with rails
+};
+
+/// Returns a bed, or for who lies perhaps a sofa, or nothing if limbs are in the way of all that were tried.
+std::optional<Bed> put_bed_under(const SceneOptions& options, const Posed& posed, const BedFit& fit, Random& random) {
+  Bed bed;
+  bed.height_m = between(0.25, 0.6, random);
+  bed.raised = posed.member;
+  put(bed.raised, Isometry3f(Translation3f(0.F, bed.height_m - kCushion_m, 0.F)));
+  bed.care = asked(options.care_probability, random);
+  const float swell = draw_swell(options, random);
+  if (posed.posture == Posture::lying && !bed.care && asked(options.lying_sofa_probability, random)) {
+    std::optional<Furniture> sofa = make_lying_sofa(fit, bed.height_m, swell, random);
+    if (sofa && !sinks_in(bed.raised.outline, sofa->solids)) {
+      bed.piece = std::move(*sofa);
+      return bed;
+    }
+  }
+  constexpr int kTries = 3;
+  for (int i = 0; i < kTries; ++i) {
+    bed.width_m = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
+    const float length = std::max(between(1.9, 2.1, random), fit.length_m + 0.1F);
+    bed.piece = (bed.care ? make_care_bed : make_bed)(bed.width_m, length, bed.height_m, random);
+    if (swell > 0.F) add_soft_mattress(bed.width_m, length, bed.height_m, swell, bed.piece, random);
+    move(bed.piece, fit.body_from_bed);
+    if (!sinks_in(bed.raised.outline, bed.piece.solids)) return bed;
+  }
+  return std::nullopt;
+}
+
+/// Returns the cover of somebody who sits up in bed: over the legs up to the hips.
+BlanketPlace up_to_hips(BlanketPlace cover, const BedFit& fit, const PosedBody& body) {
+  const float hips = (fit.body_from_bed.inverse() * body.joints[index(Bone::pelvis)]).z();
+  cover.high.y() = std::max(hips - 0.1F, cover.low.y() + 0.2F);
+  cover.top_m = cover.ground_m + 0.28F;  // who bends forward stays above
+  return cover;
+}
+
+/// Returns somebody who lies, or sits with the legs along a bed, on a bed or on the floor, perhaps below a blanket.
+PeopleGroup lying_group(const SceneOptions& options, Posed posed, bool on_bed, Random& random) {
   PeopleGroup group;
   const BedFit fit = fit_bed(posed.member.body);
-  float ground = 0.F;
-  bool care = false;
-  float width = 0.F;
-  if (chance(options.bed_probability, random)) {
-    const float height = between(0.25, 0.6, random);
-    GroupMember raised = posed.member;
-    put(raised, Isometry3f(Translation3f(0.F, height - kCushion_m, 0.F)));
-    care = asked(options.care_probability, random);
-    const float swell = draw_swell(options, random);
-    if (!care && asked(options.lying_sofa_probability, random)) {
-      std::optional<Furniture> sofa = make_lying_sofa(fit, height, swell, random);
-      if (sofa && !sinks_in(raised.outline, sofa->solids)) group.furniture.push_back(std::move(*sofa));
-    }
-    constexpr int kTries = 3;
-    for (int i = 0; i < kTries && group.furniture.empty(); ++i) {
-      width = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
-      const float length = std::max(between(1.9, 2.1, random), fit.length_m + 0.1F);
-      Furniture bed = (care ? make_care_bed : make_bed)(width, length, height, random);
-      if (swell > 0.F) add_soft_mattress(width, length, height, swell, bed, random);
-      move(bed, fit.body_from_bed);
-      if (!sinks_in(raised.outline, bed.solids)) group.furniture.push_back(std::move(bed));
-    }
-    if (!group.furniture.empty()) {
-      posed.member = std::move(raised);
-      ground = height;
-    }
-  }
-  group.members.push_back(std::move(posed.member));
-  const bool high = care && !group.furniture.empty() && chance(0.6, random);
+  std::optional<Bed> bed = on_bed ? put_bed_under(options, posed, fit, random) : std::nullopt;
+  const float ground = bed ? bed->height_m : 0.F;
+  const bool sits = posed.posture != Posture::lying, care = bed && bed->care;
+  if (bed) group.furniture.push_back(std::move(bed->piece));
+  group.members.push_back(bed ? std::move(bed->raised) : std::move(posed.member));
+  const bool high = care && chance(0.6, random);
   if (high || asked(options.blanket_probability, random)) {
+    const PosedBody& body = group.members[0].body;
     const BlanketPlace cover =
-        high ? draw_high_cover(fit, group.members[0].body, width, ground, random) : draw_cover(fit, ground, random);
-    add_blanket(cover, fit.body_from_bed, group.members[0], group, random);
+        high ? draw_high_cover(fit, body, bed->width_m, ground, random) : draw_cover(fit, ground, random);
+    add_blanket(sits ? up_to_hips(cover, fit, body) : cover, fit.body_from_bed, group.members[0], group, random);
   }
   return group;
+}
+
+/// Returns whether somebody sits on the floor with the legs stretched out, as people sit in bed.
+bool sits_along(const Posed& posed) {
+  if (posed.posture != Posture::sitting || posed.seat) return false;
+  const auto at = [&](Bone bone) -> const Eigen::Vector3f& { return posed.member.body.joints[index(bone)]; };
+  const Eigen::Vector3f hips = at(Bone::pelvis), feet = 0.5F * (at(Bone::l_foot) + at(Bone::r_foot));
+  constexpr float kStretched_m = 0.5F;
+  return Eigen::Vector2f(feet.x() - hips.x(), feet.z() - hips.z()).norm() > kStretched_m;
 }
 
 /// Returns two people side by side who look in about the same direction, as close as arms and clothes allow or a hand's
@@ -372,7 +403,10 @@ std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vec
     } else if (posed.seat) {
       group = sitting_group(options, std::move(posed), random);
     } else if (posed.posture == Posture::lying) {
-      group = lying_group(options, std::move(posed), random);
+      const bool on_bed = chance(options.bed_probability, random);
+      group = lying_group(options, std::move(posed), on_bed, random);
+    } else if (options.care_probability > 0.F && sits_along(posed) && chance(options.bed_probability, random)) {
+      group = lying_group(options, std::move(posed), true, random);
     } else {
       group = standing_group(options, plans, std::move(posed), random);
     }

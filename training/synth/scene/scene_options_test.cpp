@@ -126,9 +126,27 @@ TEST(SceneOptions, CoverPeopleInBedsWithRailsToTheNeck) {
   EXPECT_GT(to_neck, 0.1 * to_chest);
 }
 
+TEST(SceneOptions, LetPeopleSitUpInBeds) {
+  SceneOptions options = bare();
+  options.bed_probability = 1.F;
+  const auto raised = [&] {
+    int count = 0;
+    for_scenes(40, options, &PoseSamplerOptions::sitting_up, [&](const BuiltScene& built) {
+      for (const PlacedPerson& person : built.people) {
+        count += person.posture == Posture::sitting && person.body.joints[index(Bone::pelvis)].y() > 0.25F ? 1 : 0;
+      }
+    });
+    return count;
+  };
+  EXPECT_EQ(raised(), 0) << "without care nobody who sits low has a bed";
+  options.care_probability = 1.F;
+  EXPECT_GE(raised(), 10);
+}
+
 TEST(SceneOptions, SeatPeopleInWheelchairsWithTheirFeetOnTheRests) {
   SceneOptions options = bare();
   options.care_probability = 1.F;
+  options.bed_probability = 0.F;
   int people = 0, lifted = 0, held = 0;
   for_scenes(80, options, &PoseSamplerOptions::sitting, [&](const BuiltScene& built) {
     for (const PlacedPerson& person : built.people) {
