@@ -280,6 +280,8 @@ MeasuredCamera measure_source(const std::string& uri, int most_frames) {
   }
   if (measured.frames == 0) throw Error(uri + ": no frames");
   measured.figures = statistics.figures();
+  if (measured.figures.holes == 1.0) throw Error(uri + ": no pixel of any frame has a depth");
+  measured.notes = source->notes();
   return measured;
 }
 

@@ -15,10 +15,11 @@ struct MeasuredCamera {
   Camera camera;
   int frames = 0;
   synth::DepthFigures figures;
+  std::vector<std::string> notes{};  ///< of the source, such as a guessed focal length
 };
 
 /// Reads at most so many frames, spread evenly over a source that can seek, and measures them. Throws Error if it has
-/// none, or if its camera changes its size.
+/// none, if its camera changes its size, or if no pixel has a reading.
 MeasuredCamera measure_source(const std::string& uri, int most_frames);
 
 /// Returns how unlike real pictures rendered ones are: the mean absolute logarithm of the ratio of those figures that

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "io/files/options_file.h"
 #include "io/files/test_files.h"
 #include "synth/generate.h"
 #include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius::cli {
 namespace {
@@ -31,7 +33,7 @@ MeasuredCamera measure_rendered(const synth::SensorOptions& sensor, int frames) 
   const synth::Generator generator(recipe, {}, paper_body(), 99);
   synth::DepthStatistics statistics;
   for (int i = 0; i < frames; ++i) statistics.add(generator.frame(i).frame.depth);
-  return {.camera = synth::sensor_of(sensor).camera, .frames = frames, .figures = statistics.figures()};
+  return {.camera = synth::sensor_of(sensor).camera, .frames = frames, .figures = statistics.figures(), .notes = {}};
 }
 
 synth::SensorOptions small_sensor(const char* preset) {
@@ -77,6 +79,11 @@ TEST(ImitateSensor, SaysWhatItCannotMeasure) {
   const test::TemporaryFolder folder;
   EXPECT_THAT([&] { (void)measure_source(folder.path() + "/nothing", 10); },
               ThrowsMessage<Error>(HasSubstr("nothing")));
+  (void)test::put(folder.path() + "/empty/meta.json", R"({"fx": 30, "fy": 30, "cx": 16, "cy": 12})");
+  std::filesystem::create_directories(folder.path() + "/empty/depth");
+  write_png(DepthImage(32, 24, 0), folder.path() + "/empty/depth/1.png");
+  EXPECT_THAT([&] { (void)measure_source(folder.path() + "/empty", 10); },
+              ThrowsMessage<Error>(HasSubstr("has a depth")));
   const MeasuredCamera real = measure_rendered(small_sensor("d435"), 2);
   EXPECT_THAT([&] { (void)imitate(real, "d436", small_rooms(), 2, 1, false); },
               ThrowsMessage<UsageError>(HasSubstr("d435")));

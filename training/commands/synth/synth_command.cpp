@@ -105,6 +105,9 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
 void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
   constexpr int kMostFrames = 100, kRooms = 40, kBodies = 6;
   const MeasuredCamera real = measure_source(arguments.like, kMostFrames);
+  if (!arguments.quiet) {
+    for (const std::string& note : real.notes) say("note: " + note);
+  }
   recipe.body.kind = "builtin";  // what people look like hardly matters here
   recipe.body.count = kBodies;
   recipe.pose.captured = 0.F;
