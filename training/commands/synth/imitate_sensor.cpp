@@ -235,6 +235,7 @@ std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
     if (!is_new && unlike < entry->second.first) entry->second = {unlike, sensor};
   }
   std::vector<SensorOptions> sensors;
+  sensors.reserve(best.size());
   for (auto& [kind, found] : best) sensors.push_back(std::move(found.second));
   return sensors;
 }

@@ -193,6 +193,7 @@ std::string pose_counts(const synth::PoseOptions& options, const synth::BodiesAn
   }
   if (assets.captured.empty() || options.captured < 1.F) {
     std::vector<synth::SampledPose> drawn;
+    drawn.reserve(kDraws);
     Random random(1);
     for (int i = 0; i < kDraws; ++i) {
       drawn.push_back(synth::sample_pose(options.sampler, random, synth::touch_m(options)));

@@ -299,7 +299,8 @@ PeopleGroup lying_group(const SceneOptions& options, Posed posed, bool on_bed, R
 bool sits_along(const Posed& posed) {
   if (posed.posture != Posture::sitting || posed.seat) return false;
   const auto at = [&](Bone bone) -> const Eigen::Vector3f& { return posed.member.body.joints[index(bone)]; };
-  const Eigen::Vector3f hips = at(Bone::pelvis), feet = 0.5F * (at(Bone::l_foot) + at(Bone::r_foot));
+  const Eigen::Vector3f& hips = at(Bone::pelvis);
+  const Eigen::Vector3f feet = 0.5F * (at(Bone::l_foot) + at(Bone::r_foot));
   constexpr float kStretched_m = 0.5F;
   return Eigen::Vector2f(feet.x() - hips.x(), feet.z() - hips.z()).norm() > kStretched_m;
 }
