@@ -169,9 +169,9 @@ void choose(Trials& trials, Option option, std::initializer_list<float> values) 
   trials.choose([&](SensorOptions& o, float value) { option(o) = value; }, values);
 }
 
-/// Chooses what drivers and recorders do to depth: nothing, filling or smoothing alone, or all of it; and other sizes,
-/// with or without holes blended. All are tried together, since one hides or undoes what another does.
-void choose_treatment(Trials& trials) {
+/// Chooses what the driver does to depth: nothing, filling or smoothing alone, or all of it. If the pictures had
+/// another size once, each is tried with and without holes blended: one hides or undoes what the other does.
+void choose_treatment(bool resampled, Trials& trials) {
   using Treatment = std::pair<synth::DepthFilterOptions, synth::ResamplingOptions>;
   std::array<synth::DepthFilterOptions, 5> filters;
   filters[1].share = filters[2].share = filters[4].share = 1.F;
@@ -179,10 +179,11 @@ void choose_treatment(Trials& trials) {
   filters[1].fill_share = 1.F;
   filters[1].smoothing = filters[1].blur_px = filters[1].far_blur_px = 0.F;
   filters[2].fill_share = filters[2].blur_px = filters[2].far_blur_px = 0.F;
-  std::array<synth::ResamplingOptions, 3> sizes;
-  sizes[1].share = sizes[2].share = 1.F;
-  sizes[1].holes_blended = 0.F;
-  sizes[2].holes_blended = 1.F;
+  std::vector<synth::ResamplingOptions> sizes(resampled ? 2 : 1);
+  for (std::size_t i = 0; resampled && i < sizes.size(); ++i) {
+    sizes[i].share = 1.F;
+    sizes[i].holes_blended = float(i);
+  }
   std::vector<Treatment> treatments;
   for (const auto& filter : filters) {
     for (const auto& size : sizes) treatments.emplace_back(filter, size);
@@ -221,8 +222,9 @@ void choose_light(Trials& trials) {
 }
 
 constexpr int kPasses = 2;
-/// The most trials of a preset: itself, with its border, and what is chosen above.
-constexpr int kMostTrials = 2 + 15 + kPasses * (3 + 3 + 3 + 3 + 4 + 5 + 4);
+/// The most trials of a preset: itself and with its border; what is chosen above, twice, and for pictures of another
+/// size too.
+constexpr int kMostTrials = 2 * (2 + kPasses * (4 * 3 + 4 + 5 + 4)) + kPasses * (5 + 2 * 5);
 
 /// Returns the best preset of each kind of sensor.
 std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
@@ -241,14 +243,14 @@ std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
 }
 
 /// Begins with a preset and goes through the options twice, since what one explains another may explain better.
-Imitation imitate_with(const SensorOptions& preset, Rooms& rooms) {
+Imitation imitate_with(const SensorOptions& preset, bool resampled, Rooms& rooms) {
   Trials trials(rooms, preset);
   Imitation found{.sensor = {}, .preset = trials.figures(), .figures = {}};
   trials.set_border(border_share(rooms.real, found.preset));
-  choose_treatment(trials);
   for (int pass = 0; pass < kPasses; ++pass) {
-    choose_amounts(trials);
     choose_light(trials);
+    choose_treatment(resampled, trials);
+    choose_amounts(trials);
   }
   found.sensor = trials.sensor();
   found.figures = trials.figures();
@@ -316,9 +318,11 @@ Imitation imitate(const MeasuredCamera& real, const std::string& preset, const s
   }
   std::optional<Imitation> best;
   for (const SensorOptions& first : firsts) {
-    Imitation found = imitate_with(first, rooms);
-    if (!best || unlikeness(found.figures, real.figures) < unlikeness(best->figures, real.figures)) {
-      best = std::move(found);
+    for (const bool resampled : {false, true}) {
+      Imitation found = imitate_with(first, resampled, rooms);
+      if (!best || unlikeness(found.figures, real.figures) < unlikeness(best->figures, real.figures)) {
+        best = std::move(found);
+      }
     }
   }
   progress.clear();
