@@ -63,7 +63,7 @@ TEST_F(SynthProgram, WritesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(SynthProgram, ContinuesAfterAKillWithTheSameBytes) {
-  const std::string frames = "--count 60 --shard 10 --out ";
+  const std::string frames = "--count 300 --shard 10 --threads 1 --out ";
   expect_done(run_program(synth(frames + path("whole"))));
   // The program is killed when the first shard appears, however slow the machine is.
   const std::string kill = synth(frames + path("killed")) + " & pid=$!; i=0; while [ $i -lt 600 ] && ! ls " +
@@ -153,7 +153,7 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
     EXPECT_THAT(run.err, HasSubstr(reason));
   };
   refused("synth", 2, "expected one of --count, --preview and --like");
-  refused("synth --count 1 --like nowhere --out x", 2, "expected one of --count, --preview and --like");
+  refused("synth --preview 1 --like nowhere", 2, "expected one of --count, --preview and --like");
   refused("synth --like nowhere", 1, "nowhere");
   refused(synth("--count 3"), 2, "--out");
   refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");

@@ -137,7 +137,7 @@ class Wrapper:
         command = words[0]
         words = self.limit(words)
         if command == "synth":
-            words = self.replace(words, SMALL_FRAMES)
+            words = self.replace(words, {**SMALL_FRAMES, **({"--count": "2"} if "--like" in words else {})})
         if command == "train" and "--recipe" in words and "--count" not in words:
             words = self.replace(words, {"--scale": "0.99"})  # a trial: so few frames may have nobody to judge
         if command == "train" and not words[-1].endswith("help"):

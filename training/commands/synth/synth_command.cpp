@@ -103,7 +103,8 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
 
 /// Proposes the options of a sensor whose pictures are like those of a source, on standard output or in a file.
 void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
-  constexpr int kMostFrames = 100, kRooms = 40, kBodies = 6;
+  constexpr int kMostFrames = 100, kUsualRooms = 40, kBodies = 6;
+  const int rooms = arguments.count > 0 ? arguments.count : kUsualRooms;
   const MeasuredCamera real = measure_source(arguments.like, kMostFrames);
   if (!arguments.quiet) {
     for (const std::string& note : real.notes) say("note: " + note);
@@ -111,7 +112,7 @@ void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
   recipe.body.kind = "builtin";  // what people look like hardly matters here
   recipe.body.count = kBodies;
   recipe.pose.captured = 0.F;
-  const Imitation imitation = imitate(real, arguments.sensor, recipe, kRooms, arguments.seed, !arguments.quiet);
+  const Imitation imitation = imitate(real, arguments.sensor, recipe, rooms, arguments.seed, !arguments.quiet);
   TextSink sink(arguments.out.empty() ? "-" : arguments.out);
   sink.line(imitation_toml(arguments.like, real, imitation));
   sink.finish();
@@ -119,8 +120,11 @@ void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
 }
 
 void check(const Arguments& arguments) {
-  const int asked = (arguments.count > 0) + (arguments.preview > 0) + !arguments.like.empty();
-  if (asked != 1) throw UsageError("expected one of --count, --preview and --like");
+  const bool makes = arguments.like.empty();
+  if (arguments.preview > 0 ? arguments.count > 0 || !makes : makes && arguments.count == 0) {
+    throw UsageError("expected one of --count, --preview and --like");
+  }
+  if (!makes) return;
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
@@ -178,7 +182,9 @@ void run(const Arguments& arguments) {
 
 void add_output_flags(CLI::App& command, Arguments& arguments) {
   const std::string group = "Output";
-  command.add_option("--count", arguments.count, "Frames to make; with --clip clips")
+  command
+      .add_option("--count", arguments.count,
+                  "Frames to make; with --clip clips; with --like rooms rendered for each trial (default: 40)")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxFrames))
       ->group(group);
