@@ -50,6 +50,7 @@ struct SensorOptions {
   bool colour = true;
   SensorVariety variety;      ///< its options have no prefix of their own
   DepthFilterOptions filter;  ///< applied with and without noise
+  friend bool operator==(const SensorOptions&, const SensorOptions&) = default;
 };
 
 /// Data from files. All of it is optional.

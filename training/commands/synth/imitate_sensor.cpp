@@ -118,6 +118,7 @@ class Trials {
     for (const auto& value : values) {
       SensorOptions other = sensor_;
       set(other, value);
+      if (other == sensor_) continue;  // it is what it is measured with
       const DepthFigures figures = rooms_.measure(other);
       if (unlikeness(figures, rooms_.real.figures) >= unlike() - kGain) continue;
       figures_ = figures;
@@ -222,9 +223,9 @@ void choose_light(Trials& trials) {
 }
 
 constexpr int kPasses = 2;
-/// The most trials of a preset: itself and with its border; what is chosen above, twice, and for pictures of another
-/// size too.
-constexpr int kMostTrials = 2 * (2 + kPasses * (4 * 3 + 4 + 5 + 4)) + kPasses * (5 + 2 * 5);
+/// The most trials of a preset: itself, with its border, in other light; then all that is chosen above, for pictures of
+/// their own size and for others.
+constexpr int kMostTrials = 2 + 9 + kPasses * (5 + 2 * 5) + 2 * (kPasses * 16 + (kPasses - 1) * 9);
 
 /// Returns the best preset of each kind of sensor.
 std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
@@ -242,19 +243,24 @@ std::vector<SensorOptions> best_of_kinds(Rooms& rooms) {
   return sensors;
 }
 
-/// Begins with a preset and goes through the options twice, since what one explains another may explain better.
-Imitation imitate_with(const SensorOptions& preset, bool resampled, Rooms& rooms) {
-  Trials trials(rooms, preset);
-  Imitation found{.sensor = {}, .preset = trials.figures(), .figures = {}};
-  trials.set_border(border_share(rooms.real, found.preset));
-  for (int pass = 0; pass < kPasses; ++pass) {
-    choose_light(trials);
-    choose_treatment(resampled, trials);
-    choose_amounts(trials);
+/// Begins with a preset and goes through the options twice, since what one explains another may explain better: once
+/// for pictures of their own size, once for others.
+Imitation imitate_with(const SensorOptions& preset, Rooms& rooms) {
+  Trials first(rooms, preset);
+  const DepthFigures alone = first.figures();
+  first.set_border(border_share(rooms.real, alone));
+  choose_light(first);
+  std::optional<Trials> best;
+  for (const bool resampled : {false, true}) {
+    Trials trials = first;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      if (pass > 0) choose_light(trials);
+      choose_treatment(resampled, trials);
+      choose_amounts(trials);
+    }
+    if (!best || trials.unlike() < best->unlike()) best.emplace(trials);
   }
-  found.sensor = trials.sensor();
-  found.figures = trials.figures();
-  return found;
+  return {.sensor = best->sensor(), .preset = alone, .figures = best->figures()};
 }
 
 std::string row(const std::string& name, const std::array<double, 3>& values, double scale) {
@@ -318,11 +324,9 @@ Imitation imitate(const MeasuredCamera& real, const std::string& preset, const s
   }
   std::optional<Imitation> best;
   for (const SensorOptions& first : firsts) {
-    for (const bool resampled : {false, true}) {
-      Imitation found = imitate_with(first, resampled, rooms);
-      if (!best || unlikeness(found.figures, real.figures) < unlikeness(best->figures, real.figures)) {
-        best = std::move(found);
-      }
+    Imitation found = imitate_with(first, rooms);
+    if (!best || unlikeness(found.figures, real.figures) < unlikeness(best->figures, real.figures)) {
+      best = std::move(found);
     }
   }
   progress.clear();

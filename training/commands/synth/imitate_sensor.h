@@ -35,7 +35,7 @@ struct Imitation {
 };
 
 /// Finds the options whose frames are least unlike the measured ones, one after the other, from `preset` on, or from
-/// the best preset of each kind of sensor if that is empty. For each of these, at most 134 times `frames` rooms with
+/// the best preset of each kind of sensor if that is empty. For each of these, at most 123 times `frames` rooms with
 /// people are rendered, the same ones each time. `recipe` says of what; its sensor's options are not used. Options of
 /// which pictures tell nothing keep their defaults: focal-error, stray-light-max. Throws UsageError for an unknown
 /// preset, and Error when the user interrupts.

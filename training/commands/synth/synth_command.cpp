@@ -105,6 +105,7 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
 void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
   constexpr int kMostFrames = 100, kUsualRooms = 40, kBodies = 6;
   const int rooms = arguments.count > 0 ? arguments.count : kUsualRooms;
+  TextSink sink(arguments.out.empty() ? "-" : arguments.out);  // before work that it would lose
   const MeasuredCamera real = measure_source(arguments.like, kMostFrames);
   if (!arguments.quiet) {
     for (const std::string& note : real.notes) say("note: " + note);
@@ -113,7 +114,6 @@ void propose_sensor(const Arguments& arguments, synth::Recipe recipe) {
   recipe.body.count = kBodies;
   recipe.pose.captured = 0.F;
   const Imitation imitation = imitate(real, arguments.sensor, recipe, rooms, arguments.seed, !arguments.quiet);
-  TextSink sink(arguments.out.empty() ? "-" : arguments.out);
   sink.line(imitation_toml(arguments.like, real, imitation));
   sink.finish();
   if (!arguments.out.empty() && !arguments.quiet) say(arguments.out + ": a sensor, for --recipe");

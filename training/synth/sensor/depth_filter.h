@@ -20,6 +20,7 @@ struct DepthFilterOptions {
   float step_per_m = 0.03F;  ///< steps of the inverse depth from here on are edges, 1/metres
   float blur_px = 3.F;       ///< greatest reach of the blur that bridges edges
   float far_blur_px = 8.F;   ///< greatest reach of the blur at 5 m; it begins at 1.5 m
+  friend bool operator==(const DepthFilterOptions&, const DepthFilterOptions&) = default;
 };
 
 void visit_options(const std::string& prefix, DepthFilterOptions& options, OptionVisitor& visitor);

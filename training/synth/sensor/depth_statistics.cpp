@@ -60,12 +60,11 @@ std::optional<float> plane_residual_mm(const DepthImage& depth, int u, int v) {
   return static_cast<float>(rms * centre * centre);
 }
 
-/// Returns how many columns (`step_u` 1 or -1) or rows have no reading, from a corner of the picture on.
-int empty_lines(const DepthImage& depth, int step_u, int step_v) {
-  const bool columns = step_u != 0;
+/// Returns how many columns or rows have no reading, from the first or from the last one on.
+int empty_lines(const DepthImage& depth, bool columns, bool from_last) {
   const int lines = columns ? depth.width() : depth.height(), across = columns ? depth.height() : depth.width();
   const auto empty = [&](int line) {
-    const int at = step_u + step_v > 0 ? line : lines - 1 - line;
+    const int at = from_last ? lines - 1 - line : line;
     for (int i = 0; i < across; ++i) {
       if ((columns ? depth(at, i) : depth(i, at)) != 0) return false;
     }
@@ -105,8 +104,8 @@ double step_at(const std::vector<std::int64_t>& seen, int depth_mm) {
 void DepthStatistics::add(const DepthImage& depth) {
   ++frames_;
   pixels_ += static_cast<std::int64_t>(depth.size());
-  const std::array<int, 4> border = {empty_lines(depth, 1, 0), empty_lines(depth, -1, 0), empty_lines(depth, 0, 1),
-                                     empty_lines(depth, 0, -1)};
+  const std::array<int, 4> border = {empty_lines(depth, true, false), empty_lines(depth, true, true),
+                                     empty_lines(depth, false, false), empty_lines(depth, false, true)};
   for (std::size_t i = 0; i < border.size(); ++i) border_[i] += border[i];
   for (const std::uint16_t z : depth) {
     ++seen_[z];

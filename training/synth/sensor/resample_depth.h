@@ -14,6 +14,7 @@ struct ResamplingOptions {
   float share = 0.F;           ///< share of frames that had another size once
   float smallest = 0.5F;       ///< smallest size they had, as a share of theirs
   float holes_blended = 0.3F;  ///< share of those in which holes were blended as readings of 0
+  friend bool operator==(const ResamplingOptions&, const ResamplingOptions&) = default;
 };
 
 void visit_options(const std::string& prefix, ResamplingOptions& options, OptionVisitor& visitor);

@@ -18,6 +18,7 @@ struct SensorVariety {
   float border_max = 0.F;       ///< largest share of the sides that has no reading, at each border
   float focal_error = 0.F;      ///< largest error of the stated focal length, as a share of it
   ResamplingOptions resampled;
+  friend bool operator==(const SensorVariety&, const SensorVariety&) = default;
 };
 
 void visit_options(const std::string& prefix, SensorVariety& options, OptionVisitor& visitor);

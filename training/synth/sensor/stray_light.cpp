@@ -1,7 +1,7 @@
 #include "synth/sensor/stray_light.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace vesalius::synth {
@@ -9,28 +9,21 @@ namespace {
 
 constexpr float kLeastLight = 1e-6F;
 
-/// Replaces each number by the mean of those within `reach` in its row, of as many as there are.
-void blur_rows(int reach, Image<float>& image) {
-  std::vector<double> sums(static_cast<std::size_t>(image.width()) + 1);
-  for (int v = 0; v < image.height(); ++v) {
-    float* row = image.row(v);
-    for (int u = 0; u < image.width(); ++u) sums[u + 1] = sums[u] + double(row[u]);
-    for (int u = 0; u < image.width(); ++u) {
-      const int from = std::max(0, u - reach), to = std::min(image.width(), u + reach + 1);
-      row[u] = float((sums[to] - sums[from]) / double(to - from));
-    }
+/// Replaces each number of a row (step 1) or column by the mean of those within `reach`, of as many as there are.
+void blur_line(float* line, std::ptrdiff_t step, int count, int reach, std::vector<double>& sums) {
+  sums.assign(static_cast<std::size_t>(count) + 1, 0.0);
+  for (int i = 0; i < count; ++i) sums[i + 1] = sums[i] + double(line[i * step]);
+  for (int i = 0; i < count; ++i) {
+    const int from = std::max(0, i - reach), to = std::min(count, i + reach + 1);
+    line[i * step] = float((sums[to] - sums[from]) / double(to - from));
   }
 }
 
-void blur_columns(int reach, Image<float>& image) {
-  std::vector<double> sums(static_cast<std::size_t>(image.height()) + 1);
-  for (int u = 0; u < image.width(); ++u) {
-    for (int v = 0; v < image.height(); ++v) sums[v + 1] = sums[v] + double(image(u, v));
-    for (int v = 0; v < image.height(); ++v) {
-      const int from = std::max(0, v - reach), to = std::min(image.height(), v + reach + 1);
-      image(u, v) = float((sums[to] - sums[from]) / double(to - from));
-    }
-  }
+void blur(int reach, Image<float>& image) {
+  const int width = image.width(), height = image.height();
+  std::vector<double> sums;
+  for (int v = 0; v < height; ++v) blur_line(image.row(v), 1, width, reach, sums);
+  for (int u = 0; u < width; ++u) blur_line(image.row(0) + u, width, height, reach, sums);
 }
 
 }  // namespace
@@ -46,10 +39,8 @@ void add_stray_light(float share, Rendering& rendering) {
   }
   const Image<float> own = light;
   const int reach = std::max(1, depth.width() / 8);
-  for (Image<float>* image : {&light, &carried}) {
-    blur_rows(reach, *image);
-    blur_columns(reach, *image);
-  }
+  blur(reach, light);
+  blur(reach, carried);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const float all = own[i] + share * light[i];
     if (depth[i] > 0.F && all > kLeastLight) depth[i] = (own[i] * depth[i] + share * carried[i]) / all;
