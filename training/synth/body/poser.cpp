@@ -14,20 +14,25 @@ namespace vesalius::synth {
 namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
-using Skin = std::vector<std::pair<std::uint16_t, float>>;
 
 /// The zeroth and first moment of the volume that each bone carries.
 class Moments {
  public:
-  explicit Moments(std::size_t bones) : volume_(bones, 0.0), first_(bones, Eigen::Vector3d::Zero()) {}
+  explicit Moments(const BodyMesh& mesh)
+      : skin_(mesh.topology->skin), volume_(mesh.rig.size(), 0.0), first_(mesh.rig.size(), Eigen::Vector3d::Zero()) {}
 
-  /// Adds the tetrahedron between a triangle and the origin.
-  void add(const std::array<Eigen::Vector3d, 3>& p, const Skin& skin) {
+  /// Adds the tetrahedron between a triangle and the origin, which moves as those vertices do in the mean.
+  void add(const std::array<Eigen::Vector3d, 3>& p, std::span<const std::uint32_t> vertices) {
     const double volume = p[0].dot(p[1].cross(p[2])) / 6.0;
     const Eigen::Vector3d centre = (p[0] + p[1] + p[2]) / 4.0;
-    for (const auto& [bone, weight] : skin) {
-      volume_[bone] += volume * weight;
-      first_[bone] += volume * weight * centre;
+    const float scale = 1.F / float(vertices.size());
+    for (const std::uint32_t v : vertices) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (skin_[v].weight[k] <= 0.F) continue;
+        const float weight = skin_[v].weight[k] * scale;
+        volume_[skin_[v].bone[k]] += volume * weight;
+        first_[skin_[v].bone[k]] += volume * weight * centre;
+      }
     }
   }
 
@@ -43,22 +48,10 @@ class Moments {
   }
 
  private:
+  const std::vector<SkinWeights>& skin_;
   std::vector<double> volume_;
   std::vector<Eigen::Vector3d> first_;
 };
-
-/// Returns the mean weights of some vertices.
-Skin mean_skin(const BodyMesh& mesh, std::span<const std::uint32_t> vertices) {
-  Skin skin;
-  const float scale = 1.F / float(vertices.size());
-  for (const std::uint32_t v : vertices) {
-    const SkinWeights& weights = mesh.topology->skin[v];
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (weights.weight[k] > 0.F) skin.emplace_back(weights.bone[k], weights.weight[k] * scale);
-    }
-  }
-  return skin;
-}
 
 /// Returns the reversed edges that only one triangle of the part uses. They are the rims of the lids that close it.
 std::vector<Edge> open_edges(const BodyMesh& mesh, const std::vector<std::uint32_t>& triangles) {
@@ -124,16 +117,15 @@ void add_part(const BodyMesh& mesh, int part, const std::vector<std::uint32_t>& 
     for (const std::uint32_t v : mesh.topology->triangles[t]) origin += point(v);
   }
   origin /= 3.0 * double(triangles.size());
-  Moments moments(mesh.rig.size());
+  Moments moments(mesh);
   for (const std::uint32_t t : triangles) {
     const Triangle& tri = mesh.topology->triangles[t];
-    moments.add({point(tri[0]) - origin, point(tri[1]) - origin, point(tri[2]) - origin}, mean_skin(mesh, tri));
+    moments.add({point(tri[0]) - origin, point(tri[1]) - origin, point(tri[2]) - origin}, tri);
   }
   const std::vector<Edge> open = open_edges(mesh, triangles);
   Rims rims(mesh, open);
   for (const auto& [a, b] : open) {
-    moments.add({point(a) - origin, point(b) - origin, rims.middle(a) - origin},
-                mean_skin(mesh, std::array<std::uint32_t, 2>{a, b}));
+    moments.add({point(a) - origin, point(b) - origin, rims.middle(a) - origin}, std::array<std::uint32_t, 2>{a, b});
   }
   moments.write(part, origin, out);
 }

@@ -39,17 +39,23 @@ std::vector<const SurfaceRule*> rules_of(const BodyModel& body, Bone bone, bool 
   return rules;
 }
 
-/// Returns the weight of a triangle's corners for each bone, as integers, so that the order of the corners does not
+/// The share of a vertex that moves with a bone, as an integer, so that the order of a triangle's corners does not
 /// matter.
-std::array<int, kBoneCount> bone_weights(const BodyMesh& mesh, const Triangle& triangle) {
+struct BoneWeight {
+  Bone bone = Bone::pelvis;
+  int weight = 0;
+};
+using VertexWeights = std::array<BoneWeight, 8>;
+
+std::vector<VertexWeights> vertex_weights(const BodyMesh& mesh) {
   constexpr float kSteps = 4096.F;
-  std::array<int, kBoneCount> weights{};
-  for (const std::uint32_t v : triangle) {
+  std::vector<VertexWeights> weights(mesh.topology->skin.size());
+  for (std::size_t v = 0; v < weights.size(); ++v) {
     const SkinWeights& skin = mesh.topology->skin[v];
     for (std::size_t k = 0; k < 4; ++k) {
       const RigBone& bone = mesh.rig[skin.bone[k]];
-      weights[index(bone.from)] += int(std::lround(skin.weight[k] * (1.F - bone.blend) * kSteps));
-      weights[index(bone.to)] += int(std::lround(skin.weight[k] * bone.blend * kSteps));
+      weights[v][2 * k] = {bone.from, int(std::lround(skin.weight[k] * (1.F - bone.blend) * kSteps))};
+      weights[v][2 * k + 1] = {bone.to, int(std::lround(skin.weight[k] * bone.blend * kSteps))};
     }
   }
   return weights;
@@ -62,17 +68,24 @@ Eigen::Vector3d centre(const BodyMesh& mesh, const Triangle& t) {
          3.0;
 }
 
-Bone favoured_bone(const BodyMesh& mesh, const Triangle& triangle, bool left) {
-  const std::array<int, kBoneCount> weights = bone_weights(mesh, triangle);
-  Bone best = Bone::pelvis;
-  const auto rank = [&](Bone bone) {
-    const bool own_side = bone == mirror(bone) || bone_name(bone).starts_with(left ? 'l' : 'r');
-    return 2 * weights[index(bone)] + (own_side ? 1 : 0);
-  };
-  for (int b = 1; b < kBoneCount; ++b) {
-    if (rank(static_cast<Bone>(b)) > rank(best)) best = static_cast<Bone>(b);
+/// Returns 1 for the bones of the middle and of one side, 0 for those of the other.
+std::array<int, kBoneCount> of_side(char side) {
+  std::array<int, kBoneCount> own{};
+  for (int b = 0; b < kBoneCount; ++b) {
+    const Bone bone = static_cast<Bone>(b);
+    own[b] = bone == mirror(bone) || bone_name(bone).starts_with(side) ? 1 : 0;
   }
-  return best;
+  return own;
+}
+
+/// Returns the bone with which most of a triangle moves; of equal ones that of its own side.
+Bone favoured_bone(const std::vector<VertexWeights>& weights, const Triangle& triangle, bool left) {
+  static const std::array<std::array<int, kBoneCount>, 2> own{of_side('r'), of_side('l')};
+  std::array<int, kBoneCount> ranks = own[left ? 1 : 0];
+  for (const std::uint32_t v : triangle) {
+    for (const BoneWeight& w : weights[v]) ranks[index(w.bone)] += 2 * w.weight;
+  }
+  return static_cast<Bone>(std::ranges::max_element(ranks) - ranks.begin());  // the first of equal ones
 }
 
 float place_along(const BoneSegment& bone, const Eigen::Vector3d& p) {
@@ -110,7 +123,9 @@ std::uint8_t SurfaceParts::part(Bone bone, float along, bool left) const {
 std::vector<Bone> surface_bones(const BodyMesh& mesh) {
   std::vector<Bone> bones;
   bones.reserve(mesh.topology->triangles.size());
-  for (const Triangle& t : mesh.topology->triangles) bones.push_back(favoured_bone(mesh, t, centre(mesh, t).x() > 0.0));
+  const std::vector<VertexWeights> weights = vertex_weights(mesh);
+  for (const Triangle& t : mesh.topology->triangles)
+    bones.push_back(favoured_bone(weights, t, centre(mesh, t).x() > 0.0));
   return bones;
 }
 
