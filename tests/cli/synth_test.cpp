@@ -155,6 +155,7 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   refused("synth", 2, "expected one of --count, --preview and --like");
   refused("synth --preview 1 --like nowhere", 2, "expected one of --count, --preview and --like");
   refused("synth --like nowhere", 1, "nowhere");
+  refused("synth --like nowhere --clip 2", 2, "--like expects none of --clip");
   refused(synth("--count 3"), 2, "--out");
   refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");
   refused(synth("--count 3 --mounting roof --out " + path("x")), 2, "ceiling");

@@ -124,7 +124,12 @@ void check(const Arguments& arguments) {
   if (arguments.preview > 0 ? arguments.count > 0 || !makes : makes && arguments.count == 0) {
     throw UsageError("expected one of --count, --preview and --like");
   }
-  if (!makes) return;
+  const ClipRequest& clip = arguments.clip;
+  if (!makes) {
+    if (!clip.clip_s && !clip.rate_hz && arguments.cameras == 0 && arguments.first == 0 && arguments.cluster.on.empty())
+      return;
+    throw UsageError("--like expects none of --clip, --rate, --cameras, --first and --on");
+  }
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
@@ -132,16 +137,15 @@ void check(const Arguments& arguments) {
   if (!arguments.cluster.on.empty() && (arguments.count == 0 || arguments.format != "shards")) {
     throw UsageError("--on expects --count with --format shards");
   }
-  if (arguments.cameras > 0 && (arguments.count == 0 || arguments.format != "folder" || !arguments.clip.clip_s)) {
+  if (arguments.cameras > 0 && (arguments.count == 0 || arguments.format != "folder" || !clip.clip_s)) {
     throw UsageError("--cameras expects --clip, and --count with --format folder");
   }
-  if (arguments.clip.rate_hz && !arguments.clip.clip_s)
-    throw UsageError("--rate expects --clip, the seconds of each clip");
-  if (!arguments.clip.clip_s) return;
+  if (clip.rate_hz && !clip.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!clip.clip_s) return;
   const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
-  if (clips * timing_of(arguments.clip).frames() > kMaxFrames) {
+  if (clips * timing_of(clip).frames() > kMaxFrames) {
     throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,
-                                 timing_of(arguments.clip).frames(), kMaxFrames));
+                                 timing_of(clip).frames(), kMaxFrames));
   }
 }
 
