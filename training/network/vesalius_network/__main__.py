@@ -61,10 +61,10 @@ def device_of(name):
 
 
 def takes_bf16(device):
-    """Returns whether products in bf16 are quicker there: on cards, and on processors with tiles for them."""
+    """Returns whether products in bf16 are quicker there: on cards, and on processors that have them."""
     if device.type == "cuda":
         return torch.cuda.is_bf16_supported()
-    return getattr(torch.cpu, "_is_amx_tile_supported", bool)()
+    return any(getattr(torch.cpu, name, bool)() for name in ("_is_avx512_bf16_supported", "_is_amx_tile_supported"))
 
 
 def memory_of(device):
