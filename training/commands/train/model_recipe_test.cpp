@@ -194,6 +194,9 @@ TEST_F(ModelRecipes, ReadsTheShippedOnes) {
   EXPECT_EQ(frames_of(network, network.learn.frames), 200'100);
   EXPECT_EQ(network.set("near").synth.body.count, 200);
   EXPECT_EQ(network.set("hall_d435").synth.body.count, 150);
+  const ModelRecipe tune = read_model_recipe(folder + "tune.toml");
+  EXPECT_EQ(tune.learn.init, folder + "default.model");
+  EXPECT_FALSE(tune.judge.frames.empty());
 }
 
 }  // namespace

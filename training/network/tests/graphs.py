@@ -1,42 +1,12 @@
-"""The network of a model file, and graphs that an inference library runs of it."""
-
-from pathlib import Path
+"""Graphs of a network of integers that an inference library runs."""
 
 import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
-from vesalius_network.quantise import CHANNELS, ZERO, Convolution
-from vesalius_network.shards import Bytes
+from vesalius_network.quantise import CHANNELS, ZERO
 
 WEIGHT_ZERO = 128  # of the graph's unsigned weights
-
-
-def section_of_model(path, wanted="network"):
-    """Returns the bytes of a model file's section (docs/formats.md)."""
-    file = Bytes(Path(path).read_bytes(), path)
-    _, _, count, _, _ = file.numbers("8sHHIQ")
-    sizes = {}
-    for _ in range(count):
-        name = file.text().decode()
-        file.numbers("HH")
-        file.text()
-        sizes[name], _ = file.numbers("QQ")
-    contents = {name: bytes(file.take(size)) for name, size in sizes.items()}
-    return contents[wanted]
-
-
-def read_network(section):
-    """Returns the convolutions of a section `network`, those of the classes and those of the person."""
-    file, convolutions = Bytes(section, "network"), []
-    for _ in range(file.numbers("H")[0]):
-        source, side, stride, inputs, outputs, added, added_scale, wide = file.numbers("HBBHHHfB")
-        scale, offset = (np.frombuffer(file.take(4 * outputs), "<f4") for _ in range(2))
-        weights = np.frombuffer(file.take(outputs * side * side * inputs), np.int8)
-        weights = weights.reshape(outputs, side, side, inputs).transpose(0, 3, 1, 2)
-        added = max(0, added - 1)
-        convolutions.append(Convolution(source, stride, added, added_scale, bool(wide), scale, offset, weights))
-    return convolutions, *file.numbers("HH")
 
 
 class _Graph:

@@ -20,6 +20,7 @@ except ImportError as error:
     sys.exit(77)
 
 from vesalius_network import nets, place, quantise, weights
+from vesalius_network.beginning import begin_from
 from vesalius_network.body import headings_of, middles_of, read_body
 from vesalius_network.damage import KINDS, Scene, damaged
 from vesalius_network.errors import InputError
@@ -32,7 +33,8 @@ from vesalius_network.train import Plan, Training
 from vesalius_network.views import Chance, joined
 
 CPU = torch.device("cpu")
-BODIES = Path(__file__).parents[3] / "data" / "bodies"
+DATA = Path(__file__).parents[3] / "data"
+BODIES, MODELS = DATA / "bodies", DATA / "models"
 FRAMES = ["--sensor.width", "96", "--sensor.height", "72", "--people.none", "0.2", "--count", "12", "--seed", "5"]
 program, folder = None, None
 
@@ -266,14 +268,14 @@ class Files(unittest.TestCase):
         for a, b in zip(answer(network, x), answer(again, x)):
             self.assertTrue(torch.equal(a, b))
         with self.assertRaisesRegex(InputError, "a.npz: a network of config small"):
-            weights.begin_from(Network(CONFIGS["default"], 25), "default", body, path("a.npz"))
+            begin_from(Network(CONFIGS["default"], 25), "default", body, path("a.npz"), None)
 
     def test_another_body_begins_with_new_heads(self):
         body = read_body((BODIES / "paper25.toml").read_text(), "")
         other = read_body((BODIES / "upper_body.toml").read_text(), "")
         old, new = Network(CONFIGS["small"], body.parts), Network(CONFIGS["small"], other.parts)
         weights.save(path("b.npz"), "small", body, old.state_dict(), "a test")
-        self.assertIn("anew", weights.begin_from(new, "small", other, path("b.npz")))
+        self.assertIn("anew", begin_from(new, "small", other, path("b.npz"), None))
         self.assertTrue(torch.equal(new.stem[0].weight, old.stem[0].weight))
 
     def test_others_are_refused(self):
@@ -284,9 +286,9 @@ class Files(unittest.TestCase):
 
 
 class Quantising(unittest.TestCase):
-    def network(self):
+    def network(self, parts=3):
         torch.manual_seed(3)
-        network = Network(CONFIGS["small"], 3).eval()
+        network = Network(CONFIGS["small"], parts).eval()
         for module in network.modules():
             if isinstance(module, torch.nn.BatchNorm2d):
                 torch.nn.init.uniform_(module.weight, 0.5, 1.5)
@@ -320,14 +322,45 @@ class Quantising(unittest.TestCase):
             spread = real[layer].std()
             self.assertLess(float(off / spread), 0.1)
 
-    def test_the_program_reads_what_is_written(self):
-        network, body = self.network(), read_body((BODIES / "paper25.toml").read_text(), "paper25.toml")
-        network = Network(CONFIGS["small"], body.parts).eval()
+    def model(self, network, name):
+        """Writes the network as a model."""
+        body = read_body((BODIES / "paper25.toml").read_text(), "paper25.toml")
         weights.save(path("n.npz"), "small", body, network.state_dict(), "a test")
         quantise.write_network(path("n.npz"), [path("shards")], path("n.network"), 4)
-        subprocess.run([program, "convert", "-q", path("n.network"), path("n.model")], check=True)
+        subprocess.run([program, "convert", "-q", path("n.network"), path(name)], check=True)
+
+    def test_the_program_reads_what_is_written(self):
+        self.model(self.network(25), "n.model")
         said = subprocess.run([program, "info", path("n.model")], check=True, capture_output=True, text=True).stdout
         self.assertIn("a test", said)
+
+    @torch.no_grad()
+    def test_begins_with_what_a_model_says(self):
+        network, x = self.network(25), self.inputs()
+        self.model(network, "begin.model")
+        body = read_body((BODIES / "paper25.toml").read_text(), "")
+        begun = Network(CONFIGS["small"], body.parts)
+        self.assertIn("a test", begin_from(begun, "small", body, path("begin.model"), lambda: x))
+        for said, expected in zip(begun.eval()(x)[:2], network(x)):
+            self.assertLess(float((said - expected).abs().mean() / expected.std()), 0.1)
+        # A training takes away a batch's own statistics, which are those of these pictures.
+        for learning, said in zip(begun.train()(x), begun.eval()(x)):
+            self.assertLess(float((learning - said).abs().mean() / said.std()), 0.02)
+
+    def test_other_models_are_no_beginning(self):
+        body = read_body((BODIES / "paper25.toml").read_text(), "")
+        Path(path("cut.model")).write_bytes((MODELS / "default.model").read_bytes()[:5000])
+        before, default = str(MODELS / "capsule.forest"), str(MODELS / "default.model")
+        subprocess.run([program, "convert", "-q", before, path("new.forest")], check=True)
+        for model, expected in (
+            (path("cut.model"), "cut.model: damaged at byte"),
+            (before, "capsule.forest: version 2"),
+            (path("new.forest"), "new.forest: expected a model with a network"),
+            (default, "config default, expected small"),
+            (path("no.model"), "no.model: No such file"),
+        ):
+            with self.assertRaisesRegex(InputError, expected):
+                begin_from(Network(CONFIGS["small"], body.parts), "small", body, model, None)
 
 
 class Learning(unittest.TestCase):

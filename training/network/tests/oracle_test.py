@@ -20,9 +20,10 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from graphs import exact_graph, read_network, section_of_model
+from graphs import exact_graph
 from vesalius_network import quantise
 from vesalius_network.inputs import inputs_of
+from vesalius_network.model_file import read_network, read_sections
 from vesalius_network.nets import padded
 from vesalius_network.shards import Bytes
 
@@ -73,7 +74,7 @@ class Oracle(unittest.TestCase):
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as folder:
             cls.frames = frames_of(sys.argv[1], str(Path(folder) / "heads"))
-        cls.section = section_of_model(str(MODEL))
+        cls.section = read_sections(MODEL)["network"][1]
         cls.convolutions, *heads = read_network(cls.section)
         cls.heads = [head + 1 for head in heads]
 

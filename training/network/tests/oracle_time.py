@@ -17,8 +17,9 @@ import onnx
 import onnxruntime
 from onnxruntime.quantization import CalibrationDataReader, QuantType, quantize_static
 
-from graphs import read_network, real_graph, section_of_model
+from graphs import real_graph
 from oracle_test import DATA, MODEL, frames_of
+from vesalius_network.model_file import read_network, read_sections
 from vesalius_network.quantise import ZERO
 
 ROUNDS = 30
@@ -57,7 +58,7 @@ def main(program):
     with tempfile.TemporaryDirectory() as folder:
         real, quantised, out = (str(Path(folder) / name) for name in ("real.onnx", "quantised.onnx", "heads"))
         inputs = [{"channels": frame.channels[None].astype(np.float32) - ZERO} for frame in frames_of(program, out)]
-        convolutions, *heads = read_network(section_of_model(str(MODEL)))
+        convolutions, *heads = read_network(read_sections(MODEL)["network"][1])
         onnx.save(real_graph(convolutions, [head + 1 for head in heads]), real)
         types = {"activation_type": QuantType.QUInt8, "weight_type": QuantType.QInt8}
         quantize_static(real, quantised, Frames(inputs), per_channel=True, **types)

@@ -43,6 +43,8 @@ class Layer:
     source: int
     weight: torch.Tensor  # [outputs, inputs, side, side] float64
     bias: torch.Tensor  # [outputs]
+    parameters: str  # name of its parameters in nets.py
+    normalisation: str | None  # and of those of its normalisation
     stride: int = 1
     added: int | None = None
     wide: bool = False
@@ -75,7 +77,7 @@ class _Folder:
         if normalisation:
             scale, shift = self._normalisation(normalisation)
             weight, bias = weight * scale[:, None, None, None], bias * scale + shift
-        self.layers.append(Layer(name, source, weight, bias, **more))
+        self.layers.append(Layer(name, source, weight, bias, weights, normalisation, **more))
         return len(self.layers) - 1
 
     def add_up(self, name, source, normalisation):

@@ -9,12 +9,13 @@ from pathlib import Path
 import torch
 
 from . import weights
+from .beginning import begin_from
 from .damage import damaged
 from .errors import InputError
 from .figures import figures_of
 from .inputs import inputs_of
 from .losses import WEIGHTS, losses_of, targets_of, weights_of_parts
-from .nets import CONFIGS, Network, answer, multiply_adds
+from .nets import CONFIGS, Network, answer, multiply_adds, padded
 from .rounds import Rounds, draw, open_datasets, read_pools
 from .shards import BACKGROUND
 from .views import Chance
@@ -30,6 +31,7 @@ AVERAGE_SHARE = 1 / 6  # of the batches, over which weights are averaged
 WRONG_FOCAL_SHARE, WRONG_FOCAL = 0.3, 0.06  # a focal length that is a little wrong
 COUNTED_FRAMES = 400  # in which pixels of parts are counted
 MEASURED_BATCHES = 3
+LOOKED_AT_BATCHES = 4  # of a model that a training begins with
 SAVED_EVERY_S = 120.0
 TOLD_EVERY_S = 10.0
 
@@ -93,12 +95,14 @@ class Training:
         self.round, self.pools, self.held_out_pools = None, None, None
         torch.manual_seed(plan.seed)
         network = Network(CONFIGS[plan.config], self.body.parts)
-        self.begun_from = weights.begin_from(network, plan.config, self.body, plan.init) if plan.init else ""
         self.network = network.to(device).to(memory_format=torch.channels_last)
+        self.batch, self.weights, self.begun_from = 0, None, ""
+        begun = self._state_path.exists()
+        if plan.init and not begun:
+            self.begun_from = begin_from(self.network, plan.config, self.body, plan.init, self._some_inputs)
         self.average = copy.deepcopy(self.network).eval()
         self.optimiser = self._optimiser(self.network)
-        self.batch, self.weights = 0, None
-        if self._state_path.exists():
+        if begun:
             self._go_on()
 
     def _optimiser(self, network):
@@ -178,6 +182,10 @@ class Training:
         off = chance.between(1 - WRONG_FOCAL, 1 + WRONG_FOCAL, len(views))
         focal = torch.where(chance.share(len(views)) < WRONG_FOCAL_SHARE, views.focal * off, views.focal)
         return inputs_of(depth, focal), targets_of(views, depth, self.body)
+
+    def _some_inputs(self):
+        self._load()
+        return padded(torch.cat([self._examples(batch)[0] for batch in range(LOOKED_AT_BATCHES)]))
 
     def _learn(self, network, optimiser, batch):
         """Learns from a batch. Returns the losses by name."""

@@ -17,7 +17,6 @@ from .nets import CONFIGS, PERSON, Network
 
 # Names of configurations in files of weights that were learnt before this tool.
 OLD_CONFIGS = {"f": "small", "g": "default"}
-HEADS = ("labels", "inst", "joints")
 
 
 def write_whole(path, data):
@@ -67,22 +66,6 @@ def load(path):
         raise InputError(f"{path}: {error.strerror or 'expected the weights of a network'}") from error
     except Exception as error:
         raise InputError(f"{path}: expected the weights of a network, a .npz of this tool") from error
-
-
-def begin_from(network, config, body, path):
-    """Takes over the weights of a file. The heads of one for another body begin anew. Returns a text about it."""
-    about, state = load(path)
-    if about["config"] != config:
-        raise InputError(f"{path}: a network of config {about['config']}, expected {config}")
-    names = read_body(about["body"], path).names if about["body"] else body.names
-    same = names == body.names and about["classes"] == body.classes
-    if not same:
-        state = {name: value for name, value in state.items() if not name.startswith(HEADS)}
-    missing = network.load_state_dict(state, strict=False).missing_keys
-    needed = [k for k in missing if "num_batches" not in k and (same or not k.startswith(HEADS))]
-    if needed:
-        raise InputError(f"{path}: expected the weights {needed[0]}")
-    return about["made_from"] + ("" if same else "; another body, its heads began anew")
 
 
 def network_of(path, body=None):
