@@ -39,12 +39,11 @@ EPSILON = 1e-5  # of normalisations
 class Layer:
     """A convolution of real numbers. It reads the result of layer `source`, -1: the inputs."""
 
-    name: str
+    name: str  # of its parameters in nets.py
     source: int
     weight: torch.Tensor  # [outputs, inputs, side, side] float64
     bias: torch.Tensor  # [outputs]
-    parameters: str  # name of its parameters in nets.py
-    normalisation: str | None  # and of those of its normalisation
+    normalisation: str | None = None  # name of its parameters
     stride: int = 1
     added: int | None = None
     wide: bool = False
@@ -71,26 +70,26 @@ class _Folder:
         self.state = {name: value.double() for name, value in state.items()}
         self.layers = []
 
-    def add(self, name, source, weights, normalisation=None, **more):
-        weight = self.state[f"{weights}.weight"]
-        bias = self.state.get(f"{weights}.bias", torch.zeros(len(weight), dtype=torch.double))
+    def add(self, name, source, normalisation=None, **more):
+        weight = self.state[f"{name}.weight"]
+        bias = self.state.get(f"{name}.bias", torch.zeros(len(weight), dtype=torch.double))
         if normalisation:
             scale, shift = self._normalisation(normalisation)
             weight, bias = weight * scale[:, None, None, None], bias * scale + shift
-        self.layers.append(Layer(name, source, weight, bias, weights, normalisation, **more))
+        self.layers.append(Layer(name, source, weight, bias, normalisation, **more))
         return len(self.layers) - 1
 
     def add_up(self, name, source, normalisation):
         """A convolution whose result is added before a normalisation, of which it takes its share."""
-        up = self.add(name, source, name, wide=True)
+        up = self.add(name, source, wide=True)
         self.layers[up].weight = self.layers[up].weight * self._normalisation(normalisation)[0][:, None, None, None]
         return up
 
     def add_blocks(self, prefix, first, at):
         while f"{prefix}.{first}.f.0.0.weight" in self.state:
             block = f"{prefix}.{first}.f"
-            inner = self.add(f"{block}.0", at, f"{block}.0.0", f"{block}.0.1")
-            at = self.add(f"{block}.1", inner, f"{block}.1.0", f"{block}.1.1", added=at)
+            inner = self.add(f"{block}.0.0", at, f"{block}.0.1")
+            at = self.add(f"{block}.1.0", inner, f"{block}.1.1", added=at)
             first += 1
         return at
 
@@ -102,18 +101,18 @@ class _Folder:
 def layers_of(state):
     """Returns the layers of the parameters of nets.Network, the layer of the classes and that of the person."""
     folder = _Folder(state)
-    levels = [folder.add("stem", -1, "stem.0", "stem.1", stride=2)]
+    levels = [folder.add("stem.0", -1, "stem.1", stride=2)]
     for i in range(4):
-        down = folder.add(f"enc.{i}.0", levels[-1], f"enc.{i}.0.0", f"enc.{i}.0.1", stride=2)
+        down = folder.add(f"enc.{i}.0.0", levels[-1], f"enc.{i}.0.1", stride=2)
         levels.append(folder.add_blocks(f"enc.{i}", 1, down))
     at = levels.pop()
     back = []
     for j in range(4):
         up = folder.add_up(f"up.{j}", at, f"dec.{j}.0")
-        lateral = folder.add(f"lat.{j}", levels.pop(), f"lat.{j}", f"dec.{j}.0", added=up)
+        lateral = folder.add(f"lat.{j}", levels.pop(), f"dec.{j}.0", added=up)
         back.append(at := folder.add_blocks(f"dec.{j}", 2, lateral))
-    classes = folder.add("labels", back[3], "labels", wide=True)
-    person = folder.add("inst", back[2], "inst", wide=True)
+    classes = folder.add("labels", back[3], wide=True)
+    person = folder.add("inst", back[2], wide=True)
     folder.layers[person].weight = folder.layers[person].weight[:PERSON]
     folder.layers[person].bias = folder.layers[person].bias[:PERSON]
     return folder.layers, classes, person
