@@ -132,6 +132,25 @@ TEST_F(NetworkRecipe, WantsAPythonWithPyTorchBeforeItRenders) {
   EXPECT_FALSE(fs::exists(path("out.work/frames")));
 }
 
+TEST_F(NetworkRecipe, RefusesABeginningBeforeItRenders) {
+  const std::string models = VESALIUS_SOURCE_DIR "/data/models/", recipe = bytes_of(path("net.toml"));
+  const auto refused = [&](const std::string& init, const std::string& message) {
+    std::string begun = recipe;
+    begun.insert(begun.find("python ="), "init = \"" + init + "\"\n");
+    write_file_atomically(path("net.toml"), begun);
+    const Outcome run = train("exit 1");
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(path("out.work/frames")));
+  };
+  refused("none.model", path("none.model") + ": cannot be read");
+  refused(models + "capsule.forest", "capsule.forest: expected a model whose labeller is a network");
+  std::string damaged = bytes_of(models + "default.model");
+  damaged[damaged.size() / 2] ^= 1;
+  write_file_atomically(path("damaged.model"), damaged);
+  refused("damaged.model", path("damaged.model"));
+}
+
 TEST_F(NetworkRecipe, IsEstimatedWithoutPython) {
   const Outcome run = run_program("train --estimate --recipe " + path("net.toml"));
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -14,6 +14,7 @@
 #include "console/interrupts.h"
 #include "console/text_sink.h"
 #include "vesalius/error.h"
+#include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
@@ -86,9 +87,17 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);
 }
 
+/// The tool reads models without their checksums.
+void expect_beginning(const std::string& init) {
+  const std::string ending = fs::path(init).extension();
+  if (init.empty() || ending == ".npz" || ending == ".pt") return;  // weights
+  if (load_model(init).network == nullptr) throw Error(init + ": expected a model whose labeller is a network");
+}
+
 }  // namespace
 
 void expect_network_tool(const NetworkOptions& options) {
+  expect_beginning(options.init);
   const std::string folder = tool_folder();
   const CommandResult tried = run_command({options.python, "-c", "import numpy, torch, zstandard"}, kMostToImport);
   if (tried.exit_code == 0) return;

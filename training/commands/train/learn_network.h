@@ -18,7 +18,8 @@ struct NetworkRun {
   bool shown = true;                          ///< whether to pass progress on to standard error
 };
 
-/// Throws Error if there is no Python with what the tool (training/network) needs.
+/// Throws Error if there is no Python with what the tool (training/network) needs, or the training cannot begin with
+/// what it is to.
 void expect_network_tool(const NetworkOptions& options);
 
 /// Learns a network by the tool, in a process of its own, or goes on with what is in the folder. Returns the path of

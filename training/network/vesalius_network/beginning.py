@@ -17,7 +17,7 @@ from .weights import load
 UNIT = 1 / STEPS
 # Kernels before a normalisation grow to about this while they learn, which makes the same rate a smaller step.
 GROWN = 0.13
-MODELS = (".model", ".forest")  # endings of their names
+WEIGHTS = (".npz", ".pt")  # endings of their names; all else is a model
 HEADS = ("labels", "inst", "joints")
 
 
@@ -53,7 +53,7 @@ def _in_numbers(layer, convolution, before, unit):
     scale, offset = convolution.scale.astype(np.float64), convolution.offset.astype(np.float64)
     if layer.source < 0:
         offset = offset + ZERO * kernel.sum((1, 2, 3)) * scale
-        kernel = kernel[:, [0, 2, 3, 4]]
+        kernel = kernel[:, [0, 2, 3, 4]]  # of nearness in coarse steps, and the rest: the inputs of quantise._of_channels
     return kernel * (scale * unit / before)[:, None, None, None], offset * unit
 
 
@@ -69,13 +69,13 @@ def state_of(convolutions, parts, place):
         weight, bias = torch.from_numpy(weight).float(), torch.from_numpy(bias).float()
         shared = layer.added is not None and layers[layer.added].wide  # the normalisation, with what is added
         grown = GROWN / float(weight.square().mean().sqrt()) if layer.normalisation and not shared else 1.0
-        state[f"{layer.parameters}.weight"] = weight * grown
+        state[f"{layer.name}.weight"] = weight * grown
         if norm := layer.normalisation:
             none = torch.zeros_like(bias)
             state |= {f"{norm}.weight": none + 1 / grown, f"{norm}.bias": none if shared else bias}
             state |= {f"{norm}.running_mean": none, f"{norm}.running_var": none + 1 - EPSILON}
         if shared or layer.name in ("labels", "inst"):
-            state[f"{layer.parameters}.bias"] = bias
+            state[f"{layer.name}.bias"] = bias
     return config, state
 
 
@@ -121,7 +121,7 @@ def begin_from(network, config, body, path, some_inputs):
     """Takes over the weights of a file, or those of a model's network, for which `some_inputs()` [n, 4, h, w] are looked at.
     The heads of one for another body begin anew. Returns a text about it."""
     path = Path(path)
-    of_model = path.suffix in MODELS
+    of_model = path.suffix not in WEIGHTS
     about, state = _read_model(path) if of_model else load(path)
     if about["config"] != config:
         raise InputError(f"{path}: a network of config {about['config']}, expected {config}")
