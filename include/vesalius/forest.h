@@ -47,7 +47,8 @@ struct TreeLeaf {
 struct Tree {
   std::vector<TreeNode> nodes;
   std::vector<TreeLeaf> leaves;
-  /// Where leaves were learned jointly, their logits (leaf_logits.h) in the forest's unit: [leaf][LogitLayout].
+  /// Where leaves were learned jointly, their logits (leaf_logits.h) in the forest's unit: [leaf][LogitLayout]. They
+  /// then take the place of the leaves' classes, which model files leave out.
   std::vector<std::int8_t> logits = {};
   friend bool operator==(const Tree&, const Tree&) = default;
 };

@@ -191,6 +191,17 @@ TEST(ModelFile, DoesNotWriteLabelsOfUnusedSlots) {
   EXPECT_EQ(bytes, serialise_model(forest));
 }
 
+TEST(ModelFile, DoesNotWriteClassesOfLeavesWithLogits) {
+  Forest forest = random_forest(5);
+  Random random(5);
+  test::add_logits(forest, 8, random);
+  const std::string bytes = serialise_model(forest);
+  for (Tree& tree : forest.trees) {
+    for (TreeLeaf& leaf : tree.leaves) leaf = test::random_leaf(random, 25);
+  }
+  EXPECT_EQ(bytes, serialise_model(forest));
+}
+
 TEST(ModelFile, RefusesEveryTruncation) {
   const std::string bytes = serialise_model(tiny_forest());
   for (std::size_t n = 0; n < bytes.size(); ++n) {

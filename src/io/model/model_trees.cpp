@@ -154,8 +154,11 @@ void read_children(Tree& tree, std::string_view kinds, ByteReader& far) {
   });
 }
 
-/// Returns the columns in the order of the file.
+/// Returns the columns in the order of the file. Where leaves have logits, their classes stay out of it: nothing reads
+/// them.
 std::vector<std::string> columns_of(const Tree& tree) {
+  const std::vector<TreeLeaf> without_classes(tree.logits.empty() ? 0 : tree.leaves.size());
+  const std::vector<TreeLeaf>& leaves = tree.logits.empty() ? tree.leaves : without_classes;
   ByteWriter far;
   std::vector<std::string> columns = {kinds_of(tree, far), std::move(far.bytes())};
   for (const Number number : kNumbers) {
@@ -167,12 +170,12 @@ std::vector<std::string> columns_of(const Tree& tree) {
   }
   for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
     columns.push_back(column(
-        tree.leaves, [k](const TreeLeaf& leaf) { return probability_context(leaf, k); },
+        leaves, [k](const TreeLeaf& leaf) { return probability_context(leaf, k); },
         [k](const TreeLeaf& leaf) { return leaf.probability[k]; }));
   }
   for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
     columns.push_back(column(
-        tree.leaves, [k](const TreeLeaf& leaf) { return label_context(leaf, k); },
+        leaves, [k](const TreeLeaf& leaf) { return label_context(leaf, k); },
         [k](const TreeLeaf& leaf) { return leaf.label[k]; }));
   }
   return columns;

@@ -104,12 +104,13 @@ upper_body = true
   return forest;
 }
 
-/// Gives the leaves of a forest random logits and the forest a random regression of headings.
+/// Gives the leaves of a forest random logits in place of classes, and the forest a random regression of headings.
 inline void add_logits(Forest& forest, int headings, Random& random) {
   const LogitLayout layout(forest.body, forest.has_background, headings);
   forest.logit_unit = 0.0625F;
   forest.headings = headings;
   for (Tree& tree : forest.trees) {
+    std::ranges::fill(tree.leaves, TreeLeaf{});
     tree.logits.resize(tree.leaves.size() * static_cast<std::size_t>(layout.size()));
     for (std::int8_t& logit : tree.logits) logit = static_cast<std::int8_t>(static_cast<int>(random.below(256)) - 128);
   }
