@@ -49,6 +49,30 @@ std::vector<Tree> grow_round(Executor& executor, const Forest& forest, const Tra
   return grown;
 }
 
+/// Adds background that `forest` takes for a body as samples, at most as many as the options allow. Returns their
+/// number.
+std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options) {
+  const HardCounts hard = executor.count_hard_negatives(forest);
+  const double most = double(options.hard_share) * double(hard.background);
+  return executor.add_hard_negatives(hard_cut(hard, static_cast<std::uint64_t>(most)));
+}
+
+/// Learns the leaves of a forest together, and how a person's heading follows from them. Does nothing where the options
+/// ask for no rounds or the forest has no background class.
+void learn_all_leaves(Executor& executor, Forest& forest, const LeafLearningOptions& options, TreeStore& store,
+                      TrainObserver& observer) {
+  if (options.rounds == 0 || !forest.has_background) return;
+  const LogitLayout layout(forest.body, forest.has_background, options.headings);
+  const auto end_round = [&](int round, double likelihood) {
+    return observer.end_leaf_round(round, options.rounds, likelihood);
+  };
+  const LeafLogits logits =
+      learn_leaves(*executor.begin_leaves(forest, layout), forest, layout, options, store, end_round);
+  set_logits(forest, layout, logits);
+  forest.facing = fit_facing(executor.facing_samples(forest), layout.parts, layout.headings);
+  check(forest);
+}
+
 }  // namespace
 
 void visit_options(const std::string& prefix, TrainOptions& options, OptionVisitor& visitor) {
@@ -79,12 +103,6 @@ FeatureConvention training_convention(const TrainOptions& options) {
   return convention;
 }
 
-std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options) {
-  const HardCounts hard = executor.count_hard_negatives(forest);
-  const double most = double(options.hard_share) * double(hard.background);
-  return executor.add_hard_negatives(hard_cut(hard, static_cast<std::uint64_t>(most)));
-}
-
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
                     TrainObserver& observer) {
   check(options);
@@ -97,22 +115,8 @@ Forest train_forest(Executor& executor, Forest forest, const TrainOptions& optio
     observer.add_hard_negatives(add_hard_negatives(executor, forest, options.sample));
   }
   grow("forest", 0, options.trees);
-  relearn_leaves(executor, forest, options.leaves, store, observer);
+  learn_all_leaves(executor, forest, options.leaves, store, observer);
   return forest;
-}
-
-void relearn_leaves(Executor& executor, Forest& forest, const LeafLearningOptions& options, TreeStore& store,
-                    TrainObserver& observer) {
-  if (options.rounds == 0 || !forest.has_background) return;
-  const LogitLayout layout(forest.body, forest.has_background, options.headings);
-  const auto end_round = [&](int round, double likelihood) {
-    return observer.end_leaf_round(round, options.rounds, likelihood);
-  };
-  const LeafLogits logits =
-      learn_leaves(*executor.begin_leaves(forest, layout), forest, layout, options, store, end_round);
-  set_logits(forest, layout, logits);
-  forest.facing = fit_facing(executor.facing_samples(forest), layout.parts, layout.headings);
-  check(forest);
 }
 
 Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& body, const TrainOptions& options) {

@@ -66,15 +66,6 @@ class TrainObserver {
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
                     TrainObserver& observer);
 
-/// Adds background that `forest` takes for a body as samples, at most as many as the options allow. Returns their
-/// number.
-std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options);
-
-/// Learns the leaves of a forest together, and how a person's heading follows from them. Does nothing where the options
-/// ask for no rounds or the forest has no background class.
-void relearn_leaves(Executor& executor, Forest& forest, const LeafLearningOptions& options, TreeStore& store,
-                    TrainObserver& observer);
-
 /// Trains a forest on frames in memory, in one call. The forest is the same for any number of threads. Throws Error for
 /// unusable frames, UsageError for an option out of range.
 Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& body, const TrainOptions& options);

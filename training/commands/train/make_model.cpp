@@ -266,9 +266,7 @@ class ModelMaker::Work {
     } else if (!at_hand_) {
       const TrainInputs inputs(body_, inputs_of(recipe_.forest_frames), recipe_.backgrounds, run_.camera);
       const auto facts = inputs.read_backgrounds([](const LabelledFrame&) {});
-      std::optional<Forest> kept;
-      if (!run_.train.trees_of.empty()) kept = kept_trees(run_.train, inputs);
-      forest_recipe_ = train_recipe(recipe_.forest, inputs, facts, kept ? &*kept : nullptr);
+      forest_recipe_ = train_recipe(recipe_.forest, inputs, facts);
     } else {
       forest_recipe_ = labeller_recipe(*at_hand_);
     }

@@ -108,17 +108,16 @@ class ClusterRun {
     if (run_.shown) {
       for (const std::string& note : inputs_.notes()) say("note: " + note);
     }
-    const std::optional<Forest> kept = run_.trees_of.empty() ? std::nullopt : std::optional(kept_trees(run_, inputs_));
-    const FeatureConvention convention = kept ? kept->convention : training_convention(options_);
-    TrainingSet background(inputs_.body(), convention, options_.sample, static_cast<std::uint64_t>(options_.grow.seed));
+    TrainingSet background(inputs_.body(), training_convention(options_), options_.sample,
+                           static_cast<std::uint64_t>(options_.grow.seed));
     const std::vector<BackgroundFacts> facts =
         inputs_.read_backgrounds([&](const LabelledFrame& frame) { background.add(frame); });
     Forest forest = background.untrained_forest();
-    forest.recipe = train_recipe(options_, inputs_, facts, kept ? &*kept : nullptr);
+    forest.recipe = train_recipe(options_, inputs_, facts);
     session_.emplace(run_.out + ".work", forest, run_.restart);
     if (run_.restart) ClusterExecutor::clear(*engine);
     try {
-      train(*engine, choice, background, kept, std::move(forest));
+      train(*engine, choice, background, std::move(forest));
     } catch (const Interrupted&) {
       throw Error(
           fmt::format("interrupted, finished jobs are in {}: the same command goes on", engine->store().place()));
@@ -126,8 +125,7 @@ class ClusterRun {
   }
 
  private:
-  void train(Engine& engine, const EngineChoice& choice, const TrainingSet& background,
-             const std::optional<Forest>& kept, Forest forest) {
+  void train(Engine& engine, const EngineChoice& choice, const TrainingSet& background, Forest forest) {
     const auto start = std::chrono::steady_clock::now();
     ClusterTraining training{.forest = forest,
                              .options = options_,
@@ -140,17 +138,7 @@ class ClusterRun {
                               .task_memory = static_cast<std::uint64_t>(flags_.task_memory_gib * kGiB)});
     expect_people(executor);
     StepTeller observer(run_.shown);
-    if (kept) {
-      const std::string recipe = forest.recipe;
-      forest = *kept;
-      forest.recipe = recipe;
-      if (options_.hard_trees > 0) {
-        observer.add_hard_negatives(vesalius::add_hard_negatives(executor, forest, options_.sample));
-      }
-      relearn_leaves(executor, forest, options_.leaves, *session_, observer);
-    } else {
-      forest = train_forest(executor, std::move(forest), options_, *session_, observer);
-    }
+    forest = train_forest(executor, std::move(forest), options_, *session_, observer);
     save_model(forest, run_.out);
     ClusterExecutor::clear(engine);
     session_->remove();

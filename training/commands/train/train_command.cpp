@@ -36,7 +36,7 @@ struct Arguments {
   explicit Arguments(CLI::App& command) : train_flags(command) {}
 
   TrainSources sources;
-  std::string out, options_file, report, trees_of, device = "cpu";
+  std::string out, options_file, report, device = "cpu";
   OptionFlags<TrainOptions> train_flags;
   double memory_gib = 0.0, scale = 1.0;
   int threads = 0;
@@ -61,9 +61,6 @@ void check(const Arguments& arguments, const TrainOptions& options) {
   if (written_directly(arguments.out) || std::filesystem::is_directory(arguments.out, ignored)) {
     throw UsageError(arguments.out + ": expected the name of a file to write");
   }
-  if (!arguments.trees_of.empty() && (options.leaves.rounds == 0 || options.sample.background_share <= 0.F)) {
-    throw UsageError("--trees-of keeps the trees and learns leaves: expected --leaf-rounds above 0 and a background");
-  }
   if (!arguments.cluster.engine.on.empty() && (!arguments.report.empty() || arguments.estimate)) {
     throw UsageError("--on expects neither --report nor --estimate, which need all frames in one process");
   }
@@ -85,7 +82,6 @@ std::uint64_t memory_limit(const Arguments& arguments) {
 
 TrainRun run_of(const Arguments& arguments) {
   return {.out = arguments.out,
-          .trees_of = arguments.trees_of,
           .report = arguments.report,
           .curves = arguments.curves,
           .restart = arguments.restart,
@@ -100,10 +96,9 @@ bool makes_model(const Arguments& arguments) {
 }
 
 void expect_network_flags(const Arguments& arguments) {
-  const bool for_forests = !arguments.report.empty() || !arguments.trees_of.empty() ||
-                           !arguments.sources.backgrounds.empty() || !arguments.cluster.engine.on.empty();
-  if (for_forests)
-    throw UsageError("the recipe is a network's: expected neither --report, --trees-of, --background nor --on");
+  const bool for_forests =
+      !arguments.report.empty() || !arguments.sources.backgrounds.empty() || !arguments.cluster.engine.on.empty();
+  if (for_forests) throw UsageError("the recipe is a network's: expected neither --report, --background nor --on");
 }
 
 void make_model(const Arguments& arguments) {
@@ -240,9 +235,6 @@ void add_train(CLI::App& program) {
       ->type_name("FILE")
       ->group(group);
   command->add_option("--options", arguments->options_file, "TOML file of options; `vesalius options train` prints one")
-      ->type_name("FILE")
-      ->group(group);
-  command->add_option("--trees-of", arguments->trees_of, "Keep the trees of this model and only learn leaves anew")
       ->type_name("FILE")
       ->group(group);
   for (const char* name : {"--trees", "--depth", "--candidates", "--pixels"}) {

@@ -36,13 +36,6 @@ std::string without_help(const std::string& toml, std::string_view indent) {
   return text;
 }
 
-/// Returns the text with every line as a comment.
-std::string commented(const std::string& text) {
-  std::string all;
-  for (const std::string& line : lines_of(text)) all.append("#   ").append(line).append("\n");
-  return all;
-}
-
 /// Returns the text under two lines that name the program and a sum of the text.
 std::string with_key(const std::string& text) {
   return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
@@ -56,7 +49,7 @@ std::string source_text(const std::string& what, const TrainInput& input) {
 }  // namespace
 
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
-                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of) {
+                         const std::vector<BackgroundFacts>& backgrounds) {
   const auto all = [&](OptionVisitor& visitor) { visit_options("", options, visitor); };
   std::string text = without_help(options_toml(all), "");
   text += fmt::format("# body {}: sha256 {}\n", inputs.body().name, sha256_of(inputs.body().toml));
@@ -65,10 +58,6 @@ std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
   }
   for (std::size_t i = 0; i < inputs.inputs().size(); ++i) {
     text += source_text(fmt::format("data {}", i + 1), inputs.inputs()[i]);
-  }
-  if (trees_of != nullptr) {
-    text += fmt::format("# trees of a model of checksum {}, made by\n{}", model_checksum(serialise_model(*trees_of)),
-                        commented(trees_of->recipe));
   }
   return with_key(text);
 }

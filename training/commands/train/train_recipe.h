@@ -13,7 +13,7 @@ namespace vesalius::cli {
 /// its hash and, as comments, the recipe that makes it. Folders are not named, so the same data in another place gives
 /// the same text. Equal texts give equal forests. `vesalius train --options` reads the text.
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
-                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
+                         const std::vector<BackgroundFacts>& backgrounds);
 
 /// Returns how a network is learned, likewise: options, the SHA-256 of the weights that it begins with, sets to learn
 /// from. The machine may round otherwise, so equal texts mean networks that are as good.

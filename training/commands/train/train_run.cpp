@@ -116,8 +116,7 @@ class Training {
         options_(options),
         inputs_(inputs),
         device_(run.device),
-        trees_of_(run.trees_of.empty() ? std::nullopt : std::optional(kept_trees(run, inputs))),
-        set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
+        set_(inputs.body(), training_convention(options), options.sample,
              static_cast<std::uint64_t>(options.grow.seed)) {}
 
   void run(const std::function<TrainPlan()>& plan) {
@@ -152,7 +151,7 @@ class Training {
     };
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
     background_frames_ = set_.frames().size();
-    recipe_ = train_recipe(options_, inputs_, backgrounds, trees_of_ ? &*trees_of_ : nullptr);
+    recipe_ = train_recipe(options_, inputs_, backgrounds);
     session_.emplace(run_.out + ".work", untrained_forest(), run_.restart);
     inputs_.read({}, add);
     figures_.reading_s = progress.seconds();
@@ -193,23 +192,13 @@ class Training {
     device_.run({&set_}, trees_at_once_, [&](Executor& executor) {
       TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
       try {
-        forest = trees_of_ ? learn_again(executor, display)
-                           : train_forest(executor, untrained_forest(), options_, *session_, display);
+        forest = train_forest(executor, untrained_forest(), options_, *session_, display);
         figures_.grown = display.totals();
       } catch (const Interrupted&) {
         throw Error(
             fmt::format("interrupted, {} are in {}: the same command goes on", display.done(), session_->folder()));
       }
     });
-    return forest;
-  }
-
-  /// Learns the leaves of the kept trees. Background that their old leaves take for a body is learned from as well.
-  Forest learn_again(Executor& executor, TrainDisplay& display) {
-    Forest forest = *trees_of_;
-    forest.recipe = recipe_;
-    if (options_.hard_trees > 0) display.add_hard_negatives(add_hard_negatives(executor, forest, options_.sample));
-    relearn_leaves(executor, forest, options_.leaves, *session_, display);
     return forest;
   }
 
@@ -240,7 +229,6 @@ class Training {
   const TrainOptions& options_;
   const TrainInputs& inputs_;
   TrainDevice device_;
-  std::optional<Forest> trees_of_;
   TrainingSet set_;
   int trees_at_once_ = 1;
   std::size_t background_frames_ = 0;
@@ -250,17 +238,6 @@ class Training {
 };
 
 }  // namespace
-
-Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
-  Forest forest = load_model(run.trees_of).forest;
-  if (forest.trees.empty()) throw Error(run.trees_of + ": labels by a network, expected a model with trees");
-  if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
-    throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
-  }
-  if (!forest.has_background)
-    throw Error(run.trees_of + ": has no background class, expected one to learn leaves with");
-  return forest;
-}
 
 void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs,
            const std::function<TrainPlan()>& plan) {

@@ -13,7 +13,6 @@ namespace vesalius::cli {
 /// The settings of a training that are no options.
 struct TrainRun {
   std::string out;              ///< model to write; finished trees are kept in OUT.work beside it
-  std::string trees_of;         ///< model whose trees are kept, so that only leaves are learned; empty for none
   std::string report;           ///< folder of the report; empty for none
   bool curves = false;          ///< whether the report has curves
   bool restart = false;         ///< whether to discard the trees of an earlier run
@@ -22,10 +21,7 @@ struct TrainRun {
   std::uint64_t max_bytes = 0;  ///< most memory for frames and samples
 };
 
-/// Returns the forest whose trees are kept. Throws Error unless it has the inputs' parts and a background.
-Forest kept_trees(const TrainRun& run, const TrainInputs& inputs);
-
-/// Trains a forest: asks for the plan once device and kept trees are there, says it, reads all frames, grows the first
+/// Trains a forest: asks for the plan once the device is there, says it, reads all frames, grows the first
 /// round, adds hard negatives, grows the forest, and writes model and report. If an earlier run with the same inputs
 /// and options was interrupted, its trees are used, and the model is the same as without the interruption. Throws Error
 /// for unusable frames, more memory than allowed, files that cannot be written, and when the user interrupts; finished
