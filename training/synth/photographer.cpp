@@ -6,6 +6,7 @@
 
 #include "synth/body/poser.h"
 #include "synth/recipe.h"
+#include "synth/sensor/multipath.h"
 #include "synth/sensor/render.h"
 #include "synth/sensor/resample_depth.h"
 #include "synth/sensor/sensor_noise.h"
@@ -130,7 +131,10 @@ LabelledFrame Photographer::take(const BuiltScene& built, const PictureStreams& 
   Rendering seen = s.renderers.with([&](Renderer& renderer) { return renderer.render(built.scene, view, options); });
 
   LabelledFrame result;
-  if (sensor.sensor.kind == SensorKind::time_of_flight) add_stray_light(sensor.stray_light, seen);
+  if (sensor.sensor.kind == SensorKind::time_of_flight) {
+    add_multipath(sensor.multipath, seen);
+    add_stray_light(sensor.stray_light, seen);
+  }
   result.frame.name = std::move(name);
   result.frame.camera = s.sensor.camera;
   Image<std::uint32_t> source;

@@ -39,6 +39,10 @@ void visit_options(const std::string& prefix, SensorVariety& o, OptionVisitor& v
                  {"", 1, 20, "Greatest factor by which the flying pixels of time of flight reach farther."});
   visitor.option(prefix + "stray-light-max", o.stray_light_max,
                  {"", 0, 1, "Time of flight: greatest share of other surfaces' light in every reading."});
+  visitor.option(prefix + "multipath-max", o.multipath_max,
+                 {"", 0, 10,
+                  "Time of flight: greatest strength of the light that comes by way of a second surface; 1: as matt "
+                  "surfaces of the rendered brightness send it."});
   visitor.option(prefix + "border-max", o.border_max,
                  {"", 0, 0.4, "Greatest share of width and height without readings at a border."});
   visitor.option(prefix + "focal-error", o.focal_error,
@@ -47,7 +51,7 @@ void visit_options(const std::string& prefix, SensorVariety& o, OptionVisitor& v
 }
 
 VariedSensor draw_sensor(const SensorVariety& options, const Sensor& sensor, Random random) {
-  VariedSensor drawn{.sensor = sensor, .stray_light = 0.F, .true_focal_share = 1.F, .resampling = {}};
+  VariedSensor drawn{.sensor = sensor, .stray_light = 0.F, .multipath = 0.F, .true_focal_share = 1.F, .resampling = {}};
   drawn.sensor.matching_px *= draw_factor(options.matching_max, random);
   drawn.sensor.min_infrared *= draw_factor(options.dim_max, random);
   drawn.sensor.mixed_px *= draw_factor(options.flying_max, random);
@@ -55,6 +59,7 @@ VariedSensor draw_sensor(const SensorVariety& options, const Sensor& sensor, Ran
   drawn.true_focal_share = 1.F + options.focal_error * float(random.uniform(-1.0, 1.0));
   widen_borders(options.border_max, drawn.sensor, random);
   drawn.resampling = draw_resampling(options.resampled, random);
+  drawn.multipath = options.multipath_max * float(random.uniform());
   return drawn;
 }
 

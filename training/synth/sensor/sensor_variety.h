@@ -15,8 +15,10 @@ struct SensorVariety {
   float dim_max = 1.F;          ///< surfaces must send back up to this many times the light
   float flying_max = 1.F;       ///< time of flight: silhouettes are mixed up to this many times as wide
   float stray_light_max = 0.F;  ///< time of flight: largest share of the mean light that scatters into every pixel
-  float border_max = 0.F;       ///< largest share of the sides that has no reading, at each border
-  float focal_error = 0.F;      ///< largest error of the stated focal length, as a share of it
+  float multipath_max =
+      0.F;                 ///< time of flight: greatest strength of light by way of other surfaces, see add_multipath()
+  float border_max = 0.F;  ///< largest share of the sides that has no reading, at each border
+  float focal_error = 0.F;  ///< largest error of the stated focal length, as a share of it
   ResamplingOptions resampled;
   friend bool operator==(const SensorVariety&, const SensorVariety&) = default;
 };
@@ -27,6 +29,7 @@ void visit_options(const std::string& prefix, SensorVariety& options, OptionVisi
 struct VariedSensor {
   Sensor sensor;
   float stray_light = 0.F;       ///< see add_stray_light()
+  float multipath = 0.F;         ///< see add_multipath()
   float true_focal_share = 1.F;  ///< the true focal length as a share of the stated one
   Resampling resampling;
 };

@@ -16,6 +16,7 @@ TEST(SensorVariety, IsThePresetByDefault) {
     EXPECT_EQ(drawn.sensor.mixed_px, preset.mixed_px);
     EXPECT_EQ(drawn.sensor.border_high, preset.border_high);
     EXPECT_EQ(drawn.stray_light, 0.F);
+    EXPECT_EQ(drawn.multipath, 0.F);
     EXPECT_EQ(drawn.true_focal_share, 1.F);
     EXPECT_EQ(drawn.resampling.scale, 1.F);
   }
