@@ -6,6 +6,7 @@
 
 #include "synth/body/poser.h"
 #include "synth/recipe.h"
+#include "synth/sensor/colour_camera.h"
 #include "synth/sensor/multipath.h"
 #include "synth/sensor/render.h"
 #include "synth/sensor/resample_depth.h"
@@ -106,12 +107,18 @@ struct Photographer::State {
   }
 
   void add_noise(const PictureStreams& streams, ColourImage& colour) const {
+    // No frame and no clip has this number.
+    const std::uint64_t of_camera = ~streams.camera;
+    const ColourCamera camera =
+        draw_colour_camera(recipe.sensor.colour_camera, random_for(seed, Purpose::colour_noise, of_camera));
+    expose(camera, colour);
     const Random noise = random_for(seed, Purpose::colour_noise, streams.frame);
     if (streams.is_clip) {
-      add_colour_noise(colour, random_for(seed, Purpose::colour_noise, streams.camera), noise);
+      add_colour_noise(colour, random_for(seed, Purpose::colour_noise, streams.camera), noise, camera.noise);
     } else {
-      add_colour_noise(colour, noise);
+      add_colour_noise(colour, noise, camera.noise);
     }
+    record(camera, colour);
   }
 };
 

@@ -25,6 +25,7 @@ void visit(const std::string& prefix, SensorOptions& o, OptionVisitor& visitor) 
   visitor.option(prefix + "cy", o.cy, {"pixels", -1, 1e5, "Principal point, row; -1: the preset's."});
   visitor.option(prefix + "noise", o.noise, {"", 0, 1, "Whether the sensor's noise and holes are added."});
   visitor.option(prefix + "colour", o.colour, {"", 0, 1, "Whether frames get a colour picture."});
+  visit_options(prefix + "colour-", o.colour_camera, visitor);
   visit_options(prefix, o.variety, visitor);
   visit_options(prefix + "filter.", o.filter, visitor);
 }

@@ -10,6 +10,7 @@
 #include "synth/dress/outfit.h"
 #include "synth/mocap/motion_library.h"
 #include "synth/scene/build_scene.h"
+#include "synth/sensor/colour_camera.h"
 #include "synth/sensor/depth_filter.h"
 #include "synth/sensor/sensor.h"
 #include "synth/sensor/sensor_variety.h"
@@ -48,8 +49,9 @@ struct SensorOptions {
   float fx = 0.F, fy = 0.F, cx = -1.F, cy = -1.F;  ///< pixels at that size; fx 0 and cx, cy < 0 take the preset's
   bool noise = true;
   bool colour = true;
-  SensorVariety variety;      ///< its options have no prefix of their own
-  DepthFilterOptions filter;  ///< applied with and without noise
+  ColourCameraOptions colour_camera;  ///< applied with noise alone
+  SensorVariety variety;              ///< its options have no prefix of their own
+  DepthFilterOptions filter;          ///< applied with and without noise
   friend bool operator==(const SensorOptions&, const SensorOptions&) = default;
 };
 

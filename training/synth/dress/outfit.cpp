@@ -42,7 +42,14 @@ Material cloth(const OutfitOptions& options, Random& random) {
   m.period_m = uniform(random, 0.015F, 0.12F);
   m.infrared = uniform(random, 0.35F, 0.9F);  // most dyes hardly absorb infrared light
   // Leather and many blacks absorb it: trousers without any depth are common in public frames.
-  if (chance(random, options.dark_cloth)) m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
+  if (chance(random, options.dark_cloth)) {
+    m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
+    Random eye = random;  // all else stays the same with and without
+    if (chance(eye, options.dark_to_the_eye)) {
+      const float share = uniform(eye, 0.75F, 0.95F);
+      for (Rgb* colour : {&m.colour, &m.second}) *colour = mix(*colour, {10, 10, 12}, share);
+    }
+  }
   return m;
 }
 
@@ -93,6 +100,8 @@ void visit_options(const std::string& prefix, OutfitOptions& o, OptionVisitor& v
   visitor.option(prefix + "max-hair", o.max_hair_m, {"m", 0, 0.1, "Thickest hair over the skull."});
   visitor.option(prefix + "dark-cloth", o.dark_cloth,
                  {"", 0, 1, "Share of cloth that sends back next to no infrared light: leather, many blacks."});
+  visitor.option(prefix + "dark-to-the-eye", o.dark_to_the_eye,
+                 {"", 0, 1, "Share of such cloth that is dark in colour as well; the rest has any colour."});
   visitor.option(prefix + "dark-hair", o.dark_hair,
                  {"", 0, 1, "Share of hair that sends back next to no infrared light."});
 }

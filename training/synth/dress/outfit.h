@@ -21,13 +21,14 @@ struct OutfitOptions {
   float coat = 0.15F;
   float hat = 0.15F;
   float backpack = 0.08F;
-  float bag = 0.1F;           ///< a bag at the hip or in a hand
-  float held = 0.15F;         ///< a cup, phone, stick or box in a hand
-  float carried = 0.F;        ///< a bag on a strap, or an umbrella, a broom or a cane that hangs from a hand, instead
-  float max_cloth_m = 0.02F;  ///< largest thickness of cloth over the skin
-  float max_hair_m = 0.05F;   ///< largest thickness of hair over the skull
-  float dark_cloth = 0.2F;    ///< cloth that reflects almost no infrared light: leather, many blacks
-  float dark_hair = 0.3F;     ///< hair that reflects almost no infrared light
+  float bag = 0.1F;             ///< a bag at the hip or in a hand
+  float held = 0.15F;           ///< a cup, phone, stick or box in a hand
+  float carried = 0.F;          ///< a bag on a strap, or an umbrella, a broom or a cane that hangs from a hand, instead
+  float max_cloth_m = 0.02F;    ///< largest thickness of cloth over the skin
+  float max_hair_m = 0.05F;     ///< largest thickness of hair over the skull
+  float dark_cloth = 0.2F;      ///< cloth that reflects almost no infrared light: leather, many blacks
+  float dark_to_the_eye = 0.F;  ///< share of that cloth that has a dark colour too
+  float dark_hair = 0.3F;       ///< hair that reflects almost no infrared light
 };
 void visit_options(const std::string& prefix, OutfitOptions& options, OptionVisitor& visitor);
 

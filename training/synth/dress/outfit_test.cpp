@@ -97,6 +97,23 @@ TEST(Look, GivesDarkClothAndHairALowReflectance) {
   EXPECT_EQ(share_dark(options, Fabric::hair, 0.049F), 0.F);
 }
 
+TEST(Look, GivesClothThatIsDarkToTheEyeDarkColours) {
+  OutfitOptions options;
+  options.dark_cloth = 0.5F;
+  options.dark_to_the_eye = 1.F;
+  int dark = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    Random random(9, i);
+    const Material cloth = sample_look(options, random)[static_cast<std::size_t>(Fabric::top)];
+    if (cloth.infrared > 0.201F) continue;
+    ++dark;
+    for (const Rgb& colour : {cloth.colour, cloth.second}) {
+      EXPECT_LE(std::max({colour.r, colour.g, colour.b}), 74);  // a quarter of 255, and three quarters of {10, 10, 12}
+    }
+  }
+  EXPECT_GT(dark, 100);
+}
+
 TEST(Look, IsTheSameForTheSameSeed) {
   Random a(5, 1);
   Random b(5, 1);

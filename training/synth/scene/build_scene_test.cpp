@@ -111,6 +111,32 @@ TEST(BuildScene, PlacesCamerasByTheirMounting) {
   }
 }
 
+TEST(BuildScene, DarkensPiecesToTheEyeToo) {
+  SceneOptions options;
+  options.furniture_min = 4;
+  options.dark_furniture = 1.F;
+  const BuiltScene pale = build_scene(options, {}, kCamera, {plan_of({}, 0)}, Random(9));
+  options.dark_to_the_eye = 1.F;
+  const BuiltScene dark = build_scene(options, {}, kCamera, {plan_of({}, 0)}, Random(9));
+  ASSERT_EQ(pale.scene.meshes.size(), dark.scene.meshes.size());
+  int darker = 0;
+  for (std::size_t i = 0; i < pale.scene.meshes.size(); ++i) {
+    const SceneMesh& before = pale.scene.meshes[i];
+    const SceneMesh& after = dark.scene.meshes[i];
+    const bool piece = i > 0 && before.person < 0;  // 0 is the room
+    for (std::size_t m = 0; m < before.materials.size(); ++m) {
+      const Rgb was = before.materials[m].colour, is = after.materials[m].colour;
+      if (!piece) {
+        EXPECT_EQ(was, is);
+        continue;
+      }
+      EXPECT_LE(is.g, was.g / 4 + 1);
+      darker += is.g < was.g ? 1 : 0;
+    }
+  }
+  EXPECT_GT(darker, 0);
+}
+
 TEST(BuildScene, DarkensOnlyWholePieces) {
   SceneOptions options;
   options.furniture_min = 4;

@@ -71,6 +71,8 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                   "remain instead of min-visible."});
   visitor.option(prefix + "dark-furniture", o.dark_furniture,
                  {"", 0.0, 1.0, "Share of furniture that sends back next to no infrared light, as black leather."});
+  visitor.option(prefix + "dark-to-the-eye", o.dark_to_the_eye,
+                 {"", 0.0, 1.0, "Share of such furniture that is dark in colour as well; the rest has any colour."});
   visitor.option(prefix + "frontal-share", o.frontal_share,
                  {"", 0.0, 1.0, "Share of people made to face the camera; the others face anywhere."});
   visitor.option(prefix + "frontal-range", o.frontal_range_deg,

@@ -38,6 +38,7 @@ struct SceneOptions {
   float frontal_share = 0.45F;         ///< share of people who face the camera within `frontal_range_deg`
   float frontal_range_deg = 60.F;
   float dark_furniture = 0.1F;  ///< share of all pieces that reflect almost no infrared light
+  float dark_to_the_eye = 0.F;  ///< share of those that have a dark colour too
   float min_visible = 0.3F;     ///< smallest share of a person's bones within the picture
   float detail_px = 0.35F;      ///< largest error of coarser surfaces for people far away; 0 uses none
 };

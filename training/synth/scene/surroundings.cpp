@@ -196,15 +196,26 @@ Rgb draw_sky(const RoomShape& room, Random& random) {
   return {level(haze), level(0.5F * (1.F + haze)), level(1.F)};
 }
 
+Rgb dimmed(Rgb colour, float share) {
+  const auto channel = [&](std::uint8_t c) { return static_cast<std::uint8_t>(share * float(c)); };
+  return {channel(colour.r), channel(colour.g), channel(colour.b)};
+}
+
 /// Makes whole pieces black leather or lacquer, of which depth cameras see only blotches or nothing. The first mesh is
 /// the room.
-void darken_furniture(float share, Scene& scene, Random& random) {
+void darken_furniture(const SceneOptions& options, Scene& scene, Random& random) {
   constexpr std::size_t kRoom = 0;
   for (std::size_t i = kRoom + 1; i < scene.meshes.size(); ++i) {
     SceneMesh& mesh = scene.meshes[i];
-    if (mesh.person >= 0 || !chance(share, random)) continue;
+    if (mesh.person >= 0 || !chance(options.dark_furniture, random)) continue;
     const auto factor = float(std::exp(random.uniform(std::log(0.015), std::log(0.15))));
     for (Material& material : mesh.materials) material.infrared *= factor;
+    Random eye = random;  // all else stays the same with and without
+    if (!chance(options.dark_to_the_eye, eye)) continue;
+    const float left = between(0.05, 0.25, eye);
+    for (Material& material : mesh.materials) {
+      for (Rgb* colour : {&material.colour, &material.second}) *colour = dimmed(*colour, left);
+    }
   }
 }
 
@@ -254,7 +265,7 @@ void furnish(const SceneOptions& options, const RoomShape& room, const std::vect
   if (chance(options.near_probability, random)) furnisher.loom();
   add_lights(room, scene, random);
   scene.sky = draw_sky(room, random);
-  darken_furniture(options.dark_furniture, scene, random);
+  darken_furniture(options, scene, random);
 }
 
 }  // namespace vesalius::synth

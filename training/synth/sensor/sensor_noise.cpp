@@ -401,15 +401,15 @@ DepthImage sense(const Rendering& rendering, const Sensor& sensor, Random random
   return depth;
 }
 
-void add_colour_noise(ColourImage& colour, Random random) {
+void add_colour_noise(ColourImage& colour, Random random, float louder) {
   const Gains gained = draw_gains(random);
-  const auto sigma = float(random.uniform(kQuietest, kLoudest));
+  const auto sigma = louder * float(random.uniform(kQuietest, kLoudest));
   apply(gained, sigma, colour, random);
 }
 
-void add_colour_noise(ColourImage& colour, Random look, Random noise) {
+void add_colour_noise(ColourImage& colour, Random look, Random noise, float louder) {
   const Gains gained = draw_gains(look);
-  const auto sigma = float(look.uniform(kQuietest, kLoudest));
+  const auto sigma = louder * float(look.uniform(kQuietest, kLoudest));
   apply(gained, sigma, colour, noise);
 }
 
