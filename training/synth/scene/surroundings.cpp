@@ -164,7 +164,7 @@ class Furnisher {
 
   const SceneOptions& options_;
   const RoomShape& room_;
-  Vector3f eye_;
+  const Vector3f& eye_;
   Occupancy& occupancy_;
   Scene& scene_;
   Random& random_;

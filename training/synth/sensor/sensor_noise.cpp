@@ -178,7 +178,7 @@ Aim::Spot Aim::displaced(const Spot& spot) const {
   const int dv = whole_px(sigma_px * shift_v_.at(spot.u, spot.v));
   if ((du == 0 && dv == 0) || !in_.depth_m.contains(spot.u + du, spot.v + dv)) return spot;
   const float z = in_.depth_m(spot.u + du, spot.v + dv);
-  const float furthest_px = float(std::abs(du) + std::abs(dv));
+  const auto furthest_px = float(std::abs(du) + std::abs(dv));
   const bool goes_on = z > 0.F && spot.z > 0.F && std::abs(z - spot.z) < slope_m(spot, furthest_px);
   return goes_on ? spot : look(spot.u + du, spot.v + dv);
 }
