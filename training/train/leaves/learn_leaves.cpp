@@ -15,7 +15,8 @@ constexpr int kSavedRounds = 4;  ///< rounds from one that is saved to the next
 /// Samples for which the shares that a leaf has from growing count where its logits start.
 constexpr float kOwnSamples = 100.F;
 constexpr float kLargestStep = 0.5F;  ///< largest step of a logit in one round, nats
-/// Unit of logits in a file, nats: rounding over eight trees then adds about 0.2. Half of it makes files a sixth larger.
+/// Unit of logits in a file, nats: rounding over eight trees then adds about 0.2. Half of it makes files a sixth
+/// larger.
 constexpr float kLogitUnit = 1.F / 4.F;
 constexpr float kLargestLogit = 16.F;  ///< nats
 
