@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace vesalius::synth {
 namespace {
@@ -33,10 +32,15 @@ float sine_of_turn(float x) {
 
 float cosine_of_turn(float x) { return sine_of_turn(x < 0.75F ? x + 0.25F : x - 0.75F); }
 
-/// Returns the angle of a direction to the right of the vertical, in turns; within 0.001.
+/// Returns the angle of a direction from the first axis towards the second, in turns; within 0.001.
 float turn_of(float along, float across) {
-  const float slope = across / std::max(along, 1e-3F);
-  return slope / (1.F + 0.28F * slope * slope) / (2.F * std::numbers::pi_v<float>);
+  const float low = std::min(std::abs(along), std::abs(across)), high = std::max(std::abs(along), std::abs(across));
+  if (high <= 0.F) return 0.F;
+  const float slope = low / high;
+  float turn = slope / (1.F + 0.28F * slope * slope) / (2.F * std::numbers::pi_v<float>);
+  if (std::abs(across) > std::abs(along)) turn = 0.25F - turn;
+  if (along < 0.F) turn = 0.5F - turn;
+  return std::copysign(turn, across);
 }
 
 class Multipath {
@@ -53,7 +57,8 @@ class Multipath {
     }
   }
 
-  /// Returns how much farther a pixel seems along its ray: as the nearest patch of those around it.
+  /// Returns how much farther a pixel seems along its ray: as the patches around it in space, the nearest
+  /// ones most.
   float error_at(int u, int v, const Vector3f& point) const {
     const int i = u / step_, j = v / step_;
     float weights = 0.F, sum = 0.F;

@@ -92,6 +92,21 @@ TEST(Multipath, IsTheSumOverTheOtherSurface) {
   EXPECT_GT(z_error, 0.003);
 }
 
+// Floor by the wall gets little light straight, and strong light of the wall prevails.
+TEST(Multipath, GrowsWithStrengthBeyondTheLightThatComesStraight) {
+  const Rendering before = room(true);
+  const Camera& camera = before.view.camera;
+  const int u = 160, v = int(camera.cy + camera.fy / 3.F) + 10;
+  float least = 0.F;
+  for (const float strength : {1.F, 3.F, 10.F, 30.F, 100.F, 300.F}) {
+    Rendering after = before;
+    add_multipath(strength, after);
+    const float error = error_at(before, after, u, v);
+    EXPECT_GT(error, least) << strength;
+    least = error;
+  }
+}
+
 TEST(Multipath, LeavesEmptySpaceAndIsNothingWithoutStrength) {
   Rendering r = room(true);
   r.depth_m(7, 9) = 0.F;
