@@ -7,7 +7,6 @@
 #include "downloads/sha256.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

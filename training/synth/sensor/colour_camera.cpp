@@ -7,8 +7,8 @@
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 
+#include "synth/sensor/noise_field.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
@@ -19,12 +19,38 @@ constexpr float kLeastBlur_px = 0.2F;  ///< what is narrower reaches no neighbou
 
 using JpegCoder = std::unique_ptr<void, decltype(&tjDestroy)>;
 
-std::array<std::uint8_t, 256> scaled_values(float gain) {
-  std::array<std::uint8_t, 256> values{};
+/// The values of a channel by those of the scene, and of a camera's three channels.
+using Levels = std::array<std::uint8_t, 256>;
+using Gains = std::array<Levels, 3>;
+
+Levels levels(double gain) {
+  Levels values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = static_cast<std::uint8_t>(std::min(255.F, std::round(gain * float(i))));
+    values[i] = static_cast<std::uint8_t>(std::min(255.0, std::round(gain * double(i))));
   }
   return values;
+}
+
+constexpr double kExposure = 0.15;                 // sigma of the logarithm of the gain
+constexpr double kBalance = 0.04;                  // sigma of the logarithm between channels
+constexpr double kQuietest = 2.0, kLoudest = 6.0;  // sigma of a pixel, of 255
+
+std::uint8_t clipped(int value) { return static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value); }
+
+Gains draw_gains(Random& random) {
+  const double exposure = random.normal(0.0, kExposure);
+  Gains gained{};
+  for (Levels& channel : gained) channel = levels(std::exp(exposure + random.normal(0.0, kBalance)));
+  return gained;
+}
+
+void apply(const Gains& gained, float sigma, ColourImage& colour, Random& random) {
+  const auto noise = [&] { return int(std::lround(sigma * quick_normal(random))); };
+  for (Rgb& pixel : colour) {
+    pixel.r = clipped(gained[0][pixel.r] + noise());
+    pixel.g = clipped(gained[1][pixel.g] + noise());
+    pixel.b = clipped(gained[2][pixel.b] + noise());
+  }
 }
 
 /// Returns what is left of a picture after JPEG with halved colour, as cameras and recordings use it.
@@ -94,9 +120,20 @@ void expose(const ColourCamera& camera, ColourImage& colour) {
     cv::GaussianBlur(view, view, {}, double(camera.blur_px));
   }
   if (camera.red_gain == 1.F && camera.green_gain == 1.F && camera.blue_gain == 1.F) return;
-  const auto red = scaled_values(camera.red_gain), green = scaled_values(camera.green_gain),
-             blue = scaled_values(camera.blue_gain);
+  const Levels red = levels(camera.red_gain), green = levels(camera.green_gain), blue = levels(camera.blue_gain);
   for (Rgb& pixel : colour) pixel = {red[pixel.r], green[pixel.g], blue[pixel.b]};
+}
+
+void add_colour_noise(ColourImage& colour, Random random, float louder) {
+  const Gains gained = draw_gains(random);
+  const auto sigma = louder * float(random.uniform(kQuietest, kLoudest));
+  apply(gained, sigma, colour, random);
+}
+
+void add_colour_noise(ColourImage& colour, Random look, Random noise, float louder) {
+  const Gains gained = draw_gains(look);
+  const auto sigma = louder * float(look.uniform(kQuietest, kLoudest));
+  apply(gained, sigma, colour, noise);
 }
 
 void record(const ColourCamera& camera, ColourImage& colour) {

@@ -37,6 +37,12 @@ ColourCamera draw_colour_camera(const ColourCameraOptions& options, Random rando
 /// Applies what the lens and the exposure do, which comes before the noise: blur, then the gains.
 void expose(const ColourCamera& camera, ColourImage& colour);
 
+/// Adds a colour camera's exposure, white balance and pixel noise: gains of about 15 and 4 %, sigma 2 to 6 of 255 times
+/// `louder`.
+void add_colour_noise(ColourImage& colour, Random random, float louder = 1.F);
+/// The same with exposure and white balance from `look`, which a recording keeps, and the pixels' noise from `noise`.
+void add_colour_noise(ColourImage& colour, Random look, Random noise, float louder = 1.F);
+
 /// Applies what comes after it: JPEG and back, then the offset, with the border repeated. Throws Error if libjpeg
 /// fails.
 void record(const ColourCamera& camera, ColourImage& colour);

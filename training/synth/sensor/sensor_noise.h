@@ -32,10 +32,4 @@ Image<T> as_read(const Image<T>& image, const Image<std::uint32_t>& source) {
   return read;
 }
 
-/// Adds a colour camera's exposure, white balance and pixel noise: gains of about 15 and 4 %, sigma 2 to 6 of 255 times
-/// `louder`.
-void add_colour_noise(ColourImage& colour, Random random, float louder = 1.F);
-/// The same with exposure and white balance from `look`, which a recording keeps, and the pixels' noise from `noise`.
-void add_colour_noise(ColourImage& colour, Random look, Random noise, float louder = 1.F);
-
 }  // namespace vesalius::synth
