@@ -111,6 +111,10 @@ class Labeller {
     return false;
   }
 
+  /// Returns how many neighbours along a side of its window smoothing takes where SmoothOptions does not say; 0: as
+  /// many as forests need, whose pixels are labelled one by one.
+  virtual int smoothing_window() const { return 0; }
+
   /// Returns the posteriors of all pixels, each looked at.
   Posteriors label(const Frame& frame) const {
     Posteriors out;

@@ -33,7 +33,9 @@ struct LabelOptions {
 
 /// How posteriors are smoothed (section 4.2.1).
 struct SmoothOptions {
-  int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
+  /// Neighbours along a side of the square; an even number counts as the next odd one; 1 = none; 0: what suits the
+  /// labeller (Labeller::smoothing_window), 5 where it does not say.
+  int window = 0;
   int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: 1/140 of the focal length
   int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
 };

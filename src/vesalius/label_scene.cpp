@@ -42,6 +42,7 @@ float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts
 
 SceneLabeller::SceneLabeller(Model model, SceneLabelOptions options)
     : model_(std::move(model)), options_(options), sides_(LogitLayout(model_.body, true, 0).side) {
+  if (options_.smooth.window == 0) options_.smooth.window = model_.labeller->smoothing_window();
   if (model_.context.empty()) return;
   model_.context = in_order(std::move(model_.context), BodySurroundings::feature_names(body()), "context of bodies");
 }
@@ -99,8 +100,7 @@ PersonLabels SceneLabeller::label_person(const SceneLabels& scene, const Frame& 
     return label_with(scene.posteriors(), {0, 0, frame.camera.width, frame.camera.height}, frame, person, box);
   }
   const Eigen::VectorXf heading = facing(model_.headings, facing_features(scene.raw, body().part_count(), person, box));
-  const Box around =
-      grown(box, options_.smooth.window / 2 * spaced(options_.smooth, frame.camera).spacing, frame.camera);
+  const Box around = grown(box, smooth_window(options_.smooth, frame.camera).reach(), frame.camera);
   Posteriors turned;
   turn_posteriors(scene.raw, sides_, heading, around, turned);
   mean_filter(turned, crop(frame.depth, around), frame.camera, options_.smooth, anew);

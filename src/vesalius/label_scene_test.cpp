@@ -99,6 +99,47 @@ TEST_F(SceneLabellerTest, LabelsNobodyInAnEmptyMask) {
   EXPECT_EQ(labeller.label_person(labels, truth.frame, Mask(kCamera.width, kCamera.height, 0), {}).labels, nobody);
 }
 
+/// Each pixel by itself, one here and another there, and a wish for a window.
+class Speckled : public Labeller {
+ public:
+  explicit Speckled(int wish) : wish_(wish) {}
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
+    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 255, {}};
+    out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
+    for (int v = 0; v < depth.height(); ++v) {
+      for (int u = 0; u < depth.width(); ++u) out.at(u, v)[(u * 7 + v * 3) % out.classes] = depth(u, v) != 0 ? 255 : 0;
+    }
+  }
+  int smoothing_window() const override { return wish_; }
+
+ private:
+  int wish_;
+};
+
+TEST(SmoothingWindow, IsTheLabellersWhereTheOptionsDoNotSay) {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  const Frame frame = render(scene, kCamera, paper_body()).frame;
+  const auto smoothed = [&](int wish, int option) {
+    Model model;
+    model.body = paper_body();
+    model.labeller = std::make_shared<Speckled>(wish);
+    StageClock clock{nullptr};
+    SceneLabelOptions options;
+    options.smooth.window = option;
+    return SceneLabeller(model, options).label_scene(frame, clock).smooth.sums;
+  };
+  const Posteriors raw = Speckled(0).label(frame);
+  const auto by_window = [&](int window) {
+    return mean_filter(raw, frame.depth, frame.camera, SmoothOptions{.window = window}).sums;
+  };
+  EXPECT_EQ(smoothed(3, 0), by_window(3));
+  EXPECT_EQ(smoothed(3, 7), by_window(7));
+  EXPECT_EQ(smoothed(0, 0), by_window(5));
+  EXPECT_NE(by_window(3), by_window(5));
+}
+
 /// A labeller that finds left and right hands equally likely everywhere: left ones of people seen from the front, right
 /// ones of people seen from behind. Its regression takes everybody with a reading at the first pixel for seen from
 /// behind.

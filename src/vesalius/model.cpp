@@ -37,6 +37,7 @@ class RescuedLabeller : public Labeller {
     done([&] { smoothed = device_->label_and_smooth_into(frame, gate, options, out, smooth); });
     return smoothed;
   }
+  int smoothing_window() const override { return device_->smoothing_window(); }
 
  private:
   /// Returns whether the device did the work.

@@ -37,8 +37,8 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
 void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
   visitor.option(
       prefix + "window", o.window,
-      {"", 1, 31,
-       "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
+      {"", 0, 31,
+       "Neighbours along a side of the smoothing window, made odd; 1: none, 0: 5 for forests, 3 for networks."});
   visitor.option(prefix + "spacing", o.spacing,
                  {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length."});
   visitor.option(prefix + "depth-gate", o.depth_gate_mm,

@@ -68,9 +68,9 @@ void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const Sm
 
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
-  const SmoothWindow window{options.window / 2, 1, kModeDepthGate_mm};
+  const SmoothWindow window{window_side(options) / 2, 1, kModeDepthGate_mm};
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
-    const EvenWindows even(labels, options.window, begin, end);
+    const EvenWindows even(labels, window_side(options), begin, end);
     std::array<std::uint16_t, 256> count{};
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < labels.width(); ++u) {

@@ -17,8 +17,10 @@ SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
   return options;
 }
 
+int window_side(const SmoothOptions& options) { return options.window == 0 ? 5 : options.window; }
+
 SmoothWindow smooth_window(const SmoothOptions& options, const Camera& camera) {
-  return {options.window / 2, spaced(options, camera).spacing, options.depth_gate_mm};
+  return {window_side(options) / 2, spaced(options, camera).spacing, options.depth_gate_mm};
 }
 
 }  // namespace vesalius

@@ -22,6 +22,9 @@ struct SmoothWindow {
   int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
 };
 
+/// Returns the neighbours along a side of the window: those of the options, or 5.
+int window_side(const SmoothOptions& options);
+
 /// Returns the window of mean_filter.
 SmoothWindow smooth_window(const SmoothOptions& options, const Camera& camera);
 

@@ -26,6 +26,9 @@ class NetworkLabeller : public Labeller {
   /// Throws Error for a picture of more than 16,000 pixels a side.
   void label_into(const Frame& frame, float gate, Posteriors& out) const override;
 
+  /// It has seen a pixel's neighbours: a larger window costs parts (decision 58).
+  int smoothing_window() const override { return 3; }
+
  private:
   struct Working;
   std::unique_ptr<const Working> working_;
