@@ -13,15 +13,10 @@
 #include "io/files/data_file.h"
 #include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
-#include "io/model/old_model.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
-
-/// Until the models of the tree are of version 3, those of version 2 are read wherever a model is. Afterwards this is
-/// false, and only `vesalius convert` reads them.
-constexpr bool kOldModelsToo = true;
 
 /// A kind of section. A new one is a row of kContents.
 struct Content {
@@ -131,7 +126,6 @@ std::string serialise_model(const Model& model) {
 }
 
 Model parse_model(std::string_view bytes, const std::string& name) {
-  if (kOldModelsToo && model_version(bytes) == kOldModelVersion) return parse_old_model(bytes, name);
   const std::vector<ModelSection> sections = split_sections(bytes, name);
   for (const ModelSection& section : sections) check_known(section, name);
   Model model;

@@ -250,8 +250,8 @@ TEST(ModelFile, SaysWhatIsWrong) {
   newer[8] = 4;
   EXPECT_EQ(message(newer), "a.forest: written by a newer version: format 4, this program reads 3");
   std::string older = bytes;
-  older[8] = 1;
-  EXPECT_EQ(message(older), "a.forest: model of format 1; `vesalius convert OLD NEW` makes it format 3");
+  older[8] = 2;
+  EXPECT_EQ(message(older), "a.forest: model of format 2; `vesalius convert OLD NEW` makes it format 3");
   std::string damaged = bytes;
   damaged[40] = static_cast<char>(damaged[40] ^ 1);
   EXPECT_EQ(message(damaged), "a.forest: damaged model, the checksum of its table of sections does not match");
