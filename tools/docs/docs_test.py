@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Tests of what the site is built with: links of pages, links of the built site, signatures of Python."""
+"""Tests of what the site is built with: links of pages, links of the built site, signatures of Python, tables of accuracy."""
 
+import json
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import bars_by_part  # noqa: E402
+sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[2] / "bench/accuracy")]
 import check_links  # noqa: E402
 import python_reference  # noqa: E402
+import tables  # noqa: E402
 from stage import BrokenLinks, Stage  # noqa: E402
 
 
@@ -63,22 +65,45 @@ class StagedPages(Folder):
         self.assertEqual(site("a.md"), "```bash\nvesalius info\n```\n\n```\nframe -> people\n```\n\n```bash camera\nls\n```\n")
 
 
-class BarsByPart(Folder):
-    HEADER = "set,figure,value\n"
+class AccuracyTables(Folder):
+    PAGE = "before\n<!-- table rendered -->\n| old |\n<!-- end -->\nafter\n"
 
-    def test_bars_are_as_long_as_the_shares_of_their_set(self):
-        self.write({"a.csv": self.HEADER + "".join(f"{name},part.right_of_{fewest}.neck,{share}\n" for name, fewest, share in
-                                                   [("clear", 4, 0.5), ("clear", 8, 0.75), ("other", 4, 0.1), ("other", 8, 0.1)])})
-        bars_by_part.draw(self.folder / "a.svg", "clear", {"network": self.folder / "a.csv"})
-        picture = (self.folder / "a.svg").read_text()
-        for word in ['width="120.0"', 'width="180.0"', ">50<", ">75<", ">neck<", ">network<"]:
-            self.assertEqual(picture.count(word), 1, word)
+    def record(self, model, run, found):
+        figures = {"people.found": {"value": found / 4, "numerator": found, "denominator": 4}}
+        one = {"name": run, "source": f"models/{run}.toml", "frames": 5, "figures": figures}
+        self.write({f"{model}/{run}.json": json.dumps({"sets": [one]})})
 
-    def test_without_such_a_set_nothing_is_drawn(self):
-        self.write({"a.csv": self.HEADER + "clear,people.found,0.5\n"})
-        with self.assertRaisesRegex(SystemExit, "no part.right_of_"):
-            bars_by_part.draw(self.folder / "a.svg", "clear", {"network": self.folder / "a.csv"})
-        self.assertFalse((self.folder / "a.svg").exists())
+    def filled(self, page=PAGE):
+        self.write({"page.md": page})
+        for model, found in (("a", 1), ("b", 3)):
+            for run in ("held_out", "held_out_usual"):
+                self.record(model, run, found)
+        with unittest.mock.patch.object(sys, "argv", ["tables.py", str(self.folder / "page.md"), *(f"{model}={self.folder / model}" for model in "ab")]):
+            tables.main()
+        return (self.folder / "page.md").read_text()
+
+    def test_a_table_takes_the_place_of_the_old_one(self):
+        page = self.filled()
+        self.assertTrue(page.startswith("before\n<!-- table rendered -->\n|"))
+        self.assertTrue(page.endswith("<!-- end -->\nafter\n"))
+        self.assertIn("| people found | 1 of 4, 25.0 % | 1 of 4, 25.0 % | 3 of 4, 75.0 % | 3 of 4, 75.0 % |", page)
+        self.assertNotIn("old", page)
+        self.assertEqual(self.filled(page), page)
+
+    def test_figures_that_are_not_there_are_dashes_and_sets_add_up(self):
+        sets = [{"figures": {"f": {"value": 0.5, "numerator": 1, "denominator": 2}}}, {"figures": {"f": {"value": 1, "numerator": 6, "denominator": 6}}}]
+        self.assertEqual(tables.filled("{f:%1} of {f:d}, {f:.2}; {g:n}", *sets), "87.5 of 8, 0.88; -")
+        self.assertEqual(tables.filled("{g:n}", sets[0]), "")
+
+    def test_a_run_that_was_not_made_is_named(self):
+        with self.assertRaisesRegex(SystemExit, "a: no protocol.json, expected all that"):
+            self.filled("<!-- table protocol -->\n<!-- end -->\n")
+
+    def test_an_unknown_table_changes_nothing(self):
+        page = "<!-- table nosuch -->\n<!-- end -->\n"
+        with self.assertRaisesRegex(SystemExit, "no table nosuch, expected one of which, real"):
+            self.filled(page)
+        self.assertEqual((self.folder / "page.md").read_text(), page)
 
 
 class BuiltLinks(Folder):
