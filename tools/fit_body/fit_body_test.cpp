@@ -51,7 +51,7 @@ class FitBody : public testing::Test {
       asked.people.two = 1.F;
     }});
     const cli::LoadedAssets loaded = cli::load_assets(recipe, {.folder = {}, .motions = {}, .movements = true});
-    const cli::FrameMaker maker = cli::make_frame_maker(recipe, loaded.assets, paper_body(), 3, {3.F, {}});
+    const cli::FrameMaker maker = cli::make_frame_maker(recipe, loaded.assets, paper_body(), 3, {5.F, {}});
     DatasetInfo info = cli::rendered_info(recipe, loaded, paper_body(), 3, maker.frames_in(1));
     info.clips = maker.clips;
     cli::write_dataset(path("clip"), maker, info, false);

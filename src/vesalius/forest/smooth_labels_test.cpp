@@ -138,7 +138,7 @@ TEST(MeanFilter, LosesTheLowestBitsIfSumsExceed16Bits) {
                                              : static_cast<std::uint16_t>(random.below(255U * trees + 1U)));
     }
     in.settled(4, 4) = 1;
-    const SmoothOptions options{.spacing = 1, .depth_gate_mm = 250};
+    const SmoothOptions options{.window = 5, .spacing = 1, .depth_gate_mm = 250};
     const Posteriors out = mean_filter(in, p.depth, kSmallCamera, options);
     for (int v = 0; v < 23; ++v) {
       for (int u = 0; u < 37; ++u) {
