@@ -33,7 +33,7 @@ RECORDINGS = {  # row: source under the folder of real frames
 PARTS = {"faces, top": "face_top", "bottom": "face_bottom", "chest": "chest", "upper arms": "upper_arm", "elbows": "elbow", "forearms": "forearm",
          "hands": "hand", "hips": "hips", "thighs": "thigh", "knees": "knee", "legs": "leg", "feet": "foot"}
 SCORES = [f"{low}_to_{low + 10}" for low in range(0, 100, 10)]
-JOINTS = {"head": "head", "shoulders": "shoulder", "elbows": "elbow", "wrists": "wrist", "hands": "hand", "hips": "hip", "knees": "knee",
+JOINTS = {"shoulders": "shoulder", "elbows": "elbow", "wrists": "wrist", "hands": "hand", "hips": "hip", "knees": "knee",
           "ankles": "ankle", "feet": "foot"}
 
 # What rendered frames have in common: rows of (label, text).
@@ -88,7 +88,10 @@ def load(folder):
     runs = Runs()
     runs.folder = folder
     for path in sorted(pathlib.Path(folder).glob("*.json")):
-        record = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            record = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError as e:
+            sys.exit(f"{path}: {e}, expected what `vesalius evaluate --json` writes")
         runs[path.stem] = {key: of_set for of_set in record["sets"] for key in (of_set["source"], of_set["name"].rsplit("/")[-1])}
         runs[path.stem] |= {"only": record["sets"][0], "sets": record["sets"]}
     return runs
@@ -172,7 +175,7 @@ def joints(models):
     columns = {f"{model}, {name}": lambda joint, sets=runs[run]["sets"]: "; ".join(filled("{joint.%s.at_10cm:%%}" % one, *sets) for one in joint)
                for model, runs in models.items() for run, name in (("joints", "four people"), ("joints_man", "one man"))}
     rows = [("head", ["head"]), ("shoulder centre", ["shoulder_center"]), ("spine", ["spine"]), ("hip centre", ["hip_center"]),
-            *((f"{label}, l; r", [f"l_{name}", f"r_{name}"]) for label, name in list(JOINTS.items())[1:])]
+            *((f"{label}, l; r", [f"l_{name}", f"r_{name}"]) for label, name in JOINTS.items())]
     table = grid("within 10 cm, %", columns, rows)
     every = [filled("{joints.at_10cm:%1}", *runs[run]["sets"]) for runs in models.values() for run in ("joints", "joints_man")]
     swapped = [filled("{sides.swapped:%1}", *runs[run]["sets"]) for runs in models.values() for run in ("joints", "joints_man")]
@@ -331,7 +334,10 @@ def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     page, models = pathlib.Path(sys.argv[1]), {name: load(folder) for name, folder in models_of(sys.argv[2:], __doc__)}
-    text = page.read_text(encoding="utf-8")
+    try:
+        text = page.read_text(encoding="utf-8")
+    except OSError as e:
+        sys.exit(f"{page}: {e.strerror}, expected a page with tables")
 
     def table(match):
         if match[1] not in TABLES:
