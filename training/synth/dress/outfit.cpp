@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "synth/mesh/palette.h"
+
 namespace vesalius::synth {
 namespace {
 
 float uniform(Random& random, float low, float high) { return low + (high - low) * float(random.uniform()); }
 
 bool chance(Random& random, float probability) { return float(random.uniform()) < probability; }
-
-Rgb mix(const Rgb& a, const Rgb& b, float share) {
-  const auto channel = [&](std::uint8_t from, std::uint8_t to) {
-    return static_cast<std::uint8_t>(std::lround(std::lerp(float(from), float(to), share)));
-  };
-  return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
-}
 
 /// Draws a colour of cloth: any hue, often muted.
 Rgb cloth_colour(Random& random) {
@@ -148,7 +143,8 @@ Outfit sample_outfit(const OutfitOptions& options, Random& random) {
 std::array<Material, kFabricCount> sample_look(const OutfitOptions& options, Random& random) {
   std::array<Material, kFabricCount> look;
   const auto of = [&](Fabric fabric) -> Material& { return look[static_cast<std::size_t>(fabric)]; };
-  of(Fabric::skin) = plain(mix({70, 45, 32}, {240, 205, 185}, uniform(random, 0.F, 1.F)), uniform(random, 0.45F, 0.7F));
+  const float skin_infrared = uniform(random, 0.45F, 0.7F);
+  of(Fabric::skin) = plain(skin_colour(random), skin_infrared);
   of(Fabric::hair) = hair(options, random);
   of(Fabric::top) = cloth(options, random);
   of(Fabric::bottom) = cloth(options, random);

@@ -75,4 +75,13 @@ Material sample_material(Stuff stuff, Random& random) {
   return material;
 }
 
+Rgb mix(const Rgb& from, const Rgb& to, float share) {
+  const auto channel = [&](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(std::lerp(float(a), float(b), share)));
+  };
+  return {channel(from.r, to.r), channel(from.g, to.g), channel(from.b, to.b)};
+}
+
+Rgb skin_colour(Random& random) { return mix({70, 45, 32}, {240, 205, 185}, float(random.uniform())); }
+
 }  // namespace vesalius::synth

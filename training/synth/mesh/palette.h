@@ -12,6 +12,12 @@ enum class Stuff { wood, cloth, paint, metal, plastic, leaf, cardboard, wall, fl
 /// their colour; black plastic, screens and dark metal do not.
 Material sample_material(Stuff stuff, Random& random);
 
+/// Draws a colour of skin.
+Rgb skin_colour(Random& random);
+
+/// Returns the colour at a share of the way from one to another.
+Rgb mix(const Rgb& from, const Rgb& to, float share);
+
 /// Draws a float uniformly from [low, high). Calls stand in declarations or braces and never as two arguments of one
 /// call, because compilers choose the order of arguments.
 inline float between(double low, double high, Random& random) { return float(random.uniform(low, high)); }

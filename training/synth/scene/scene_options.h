@@ -33,6 +33,7 @@ struct SceneOptions {
   float wall_probability = 0.F;        ///< a wall is close behind the people as the camera sees them
   float wall_gap_max_m = 0.4F;         ///< greatest distance of that wall
   float doorway_probability = 0.F;     ///< a person stands in or behind an opening in a wall
+  float picture_probability = 0.F;     ///< posters, paintings, banners and screens with pictures are at the walls
   float border_share = 0.F;            ///< share of groups of people whom the left or right border is to cut
   float cut_share = 0.F;               ///< share of cameras so near or tilted that borders cut the first people
   float frontal_share = 0.45F;         ///< share of people who face the camera within `frontal_range_deg`

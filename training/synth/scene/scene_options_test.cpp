@@ -60,7 +60,7 @@ TEST(SceneOptions, KeepPeopleOutOfSolidsAndWallsWithAllOn) {
   options.soft_probability = options.blanket_probability = options.lying_sofa_probability = 0.5F;
   options.desk_probability = options.wall_probability = options.border_share = 0.5F;
   options.gear_share = options.care_probability = options.load_probability = 0.5F;
-  options.doorway_probability = options.cut_share = 0.5F;
+  options.doorway_probability = options.cut_share = options.picture_probability = 0.5F;
   int placed = 0;
   constexpr int kScenes = 120;
   for (std::uint64_t i = 0; i < kScenes; ++i) {
@@ -212,6 +212,31 @@ TEST(SceneOptions, FillRoomsWithGear) {
   const std::size_t usual = solids();
   options.gear_share = 1.F;
   EXPECT_GT(solids(), usual + usual / 2) << "it stands on rods";
+}
+
+TEST(SceneOptions, HangPicturesAtWallsBehindEverything) {
+  SceneOptions options = bare();
+  const auto seen = [&] {
+    Renderer renderer;
+    std::vector<Rendering> result;
+    for_scenes(20, options, &PoseSamplerOptions::idle, [&](const BuiltScene& built) {
+      result.push_back(renderer.render(built.scene, built.view, {.colour = true, .projector = {}}));
+    });
+    return result;
+  };
+  const std::vector<Rendering> plain = seen();
+  options.picture_probability = 1.F;
+  const std::vector<Rendering> hung = seen();
+  int changed = 0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_TRUE(hung[i].labels == plain[i].labels) << "people in pictures are nobody";
+    float nearer_m = 0.F;
+    for (std::size_t p = 0; p < plain[i].depth_m.size(); ++p) {
+      nearer_m = std::max(nearer_m, plain[i].depth_m.data()[p] - hung[i].depth_m.data()[p]);
+    }
+    changed += hung[i].colour != plain[i].colour && nearer_m > 0.F ? 1 : 0;
+  }
+  EXPECT_GE(changed, 14);
 }
 
 TEST(SceneOptions, GiveLoadsToThoseWhoHoldTheirHandsBeforeThem) {

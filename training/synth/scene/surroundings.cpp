@@ -8,6 +8,7 @@
 #include "synth/furniture/gear.h"
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/nobody.h"
+#include "synth/furniture/pictures.h"
 #include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
@@ -65,6 +66,20 @@ class Furnisher {
     const bool at_wall = drawn.hangs || (!room_.open && chance(0.6, random_));
     for (int i = 0; i < kTries; ++i) {
       if (put(drawn.piece, at_wall ? place_at_wall(drawn.piece) : place_anywhere(), kMostHidden)) return;
+    }
+  }
+
+  /// Hangs some pictures on the walls before the camera.
+  void hang_pictures() {
+    constexpr float kMostHidden = 0.05F, kWidest_rad = 0.6F;
+    const int count = 1 + int(random_.below(5));
+    for (int i = 0; i < count; ++i) {
+      const Furniture picture = make_picture(random_);
+      for (int k = 0; k < 4 * kTries; ++k) {
+        const Isometry3f pose = place_at_wall(picture);
+        const Vector3f way = pose.translation() - eye_;
+        if (std::abs(std::atan2(way.x(), -way.z())) < kWidest_rad && put(picture, pose, kMostHidden, true)) break;
+      }
     }
   }
 
@@ -266,6 +281,7 @@ void furnish(const SceneOptions& options, const RoomShape& room, const std::vect
   add_lights(room, scene, random);
   scene.sky = draw_sky(room, random);
   darken_furniture(options, scene, random);
+  if (!room.open && asked(options.picture_probability, random)) furnisher.hang_pictures();
 }
 
 }  // namespace vesalius::synth
