@@ -2,11 +2,10 @@
 """Runs MediaPipe Pose on the colour of the frames that `vesalius evaluate` is measured on, and prints both.
 
   python3 -m venv peers && peers/bin/pip install --require-hashes -r tools/python/pins/peers.txt
-  peers/bin/python bench/peers/peers.py build/release/src/cli/vesalius data/models/default.forest real/alina_wave ...
+  peers/bin/python bench/peers/peers.py build/release/src/cli/vesalius data/models/default.model real/alina_wave ...
 
-Options: --step N (the first of every N frames), --threads N (of vesalius; MediaPipe takes what it wants), --tracking (MediaPipe
-carries a person from frame to frame; without it each frame is looked at alone, as vesalius does), --joints FOLDER (compare joints
-on these frames), --csv FILE. README.md beside this file says what is counted. The models are in MediaPipe's wheel.
+Options: --step N (the first of every N frames), --threads N (of vesalius; MediaPipe takes what it wants), --joints FOLDER (compare
+joints on these frames), --csv FILE. README.md beside this file says what is counted. The models are in MediaPipe's wheel.
 """
 import argparse
 import csv
@@ -70,11 +69,11 @@ def read_colour(folder, frame):
 
 
 class MediaPipe:
-    """MediaPipe Pose, full model."""
+    """MediaPipe Pose, full model. In video mode it carries a person from frame to frame; else each frame is looked at alone."""
 
-    def __init__(self, tracking):
+    def __init__(self, video):
         import mediapipe
-        self.pose = mediapipe.solutions.pose.Pose(static_image_mode=not tracking, model_complexity=1, enable_segmentation=True)
+        self.pose = mediapipe.solutions.pose.Pose(static_image_mode=not video, model_complexity=1, enable_segmentation=True)
 
     def look(self, colour):
         """(landmarks or None, mask or None, wall ms, processor ms) of a picture."""
@@ -105,9 +104,10 @@ def run_json(command):
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
 
 
-def run_vesalius(folder, options):
-    """The same figures from `vesalius evaluate`, and the times from `vesalius bench`."""
-    evaluate = [options.program, "evaluate", folder, "-q", "--model", options.model, "--step", str(options.step), "--json", "-"]
+def run_vesalius(folder, options, following):
+    """The same figures from `vesalius evaluate`, and the times from `vesalius bench`, of single frames or of people who are followed."""
+    flags = ["-q", "--model", options.model, *(["--track"] if following else []), "--json", "-"]
+    evaluate = [options.program, "evaluate", folder, "--step", str(options.step), *flags]
     measured = run_json(evaluate)["sets"][0]["figures"]
     figures = {}
     for name in ("people.found", "frames.empty_with_person"):
@@ -116,7 +116,7 @@ def run_vesalius(folder, options):
     figures["people.false"] = round(measured["people.false"]["numerator"])
     if "mask.iou_where_found" in measured:
         figures["mask.iou_where_found"] = measured["mask.iou_where_found"]["value"]
-    bench = [options.program, "bench", folder, "-q", "--model", options.model, "--threads", str(options.threads), "--json", "-"]
+    bench = [options.program, "bench", folder, "--threads", str(options.threads), *flags]
     timed = run_json(bench)["runs"][0]
     figures["ms"] = timed["stages"]["detect"]["median_ms"]
     figures["cpu_ms"] = timed["processor_ms_a_frame"]
@@ -175,29 +175,32 @@ def compare_joints(folder, pose, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="vesalius")
-    parser.add_argument("model", help="trained forest")
+    parser.add_argument("model", help="trained model")
     parser.add_argument("folders", nargs="*", help="folders of frames with rgb/ and frames.csv")
     parser.add_argument("--step", type=int, default=1)
     parser.add_argument("--threads", type=int, default=0)
-    parser.add_argument("--tracking", action="store_true")
     parser.add_argument("--joints", metavar="FOLDER")
     parser.add_argument("--csv", metavar="FILE")
     options = parser.parse_args()
     rows, lines = [], []
     for folder in options.folders:
         name = Path(folder).name
-        ours = run_vesalius(folder, options)
-        theirs, without_colour = run_mediapipe(folder, read_set(folder, options.step), MediaPipe(options.tracking))
+        found = {"vesalius": run_vesalius(folder, options, False), "vesalius, following": run_vesalius(folder, options, True)}
+        frames = read_set(folder, options.step)
+        for who, video in (("MediaPipe Pose", False), ("MediaPipe Pose, video mode", True)):
+            figures, without_colour = run_mediapipe(folder, frames, MediaPipe(video))
+            if without_colour < len(frames):
+                found[who] = figures
         if without_colour:
             print(f"{name}: {without_colour} frames have no colour; MediaPipe's figures are without them", file=sys.stderr)
-        for who, figures in (("vesalius", ours), ("MediaPipe Pose", theirs)):
+        for who, figures in found.items():
             rows.append([name, who, *(cell(figures.get(key)) for key in NAMES)])
     header = ["set", "by", "people found", "false", "empty frames with somebody", "mask IoU where found", "ms a frame",
               "processor ms a frame"]
     if rows:
         lines.append(markdown(header, rows))
     if options.joints:
-        table = compare_joints(options.joints, MediaPipe(options.tracking), options)
+        table = compare_joints(options.joints, MediaPipe(False), options)
         lines.append(markdown(["joint", "frames", "across the ray, cm", "of it downwards, cm", "in 3-D, cm"], table))
     print("\n\n".join(lines))
     if options.csv:
