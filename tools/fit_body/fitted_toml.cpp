@@ -64,7 +64,7 @@ std::string parts_toml(const std::vector<KnownPerson>& people, const BodyModel& 
 
 std::string trust_toml(const BodyTrust& fitted) {
   std::string toml =
-      "# How far joints of fitted bodies can be trusted (docs/tracking.md), by tools/fit_body: the logit\n"
+      "# How far joints of fitted bodies can be trusted (docs/tracking.md), by `vesalius_fit_body trust`: the logit\n"
       "# of the probability that a joint lies within 10 cm is the bias and the sum of each signal times its weight.\n";
   for (const NamedSource& source : kJointSources) {
     const JointTrust& trust = fitted.*source.trust;
@@ -79,10 +79,9 @@ std::string trust_toml(const BodyTrust& fitted) {
 
 std::string stances_toml(const StanceModel& fitted) {
   std::string toml =
-      "# How probable stances are by one frame (docs/tracking.md), by tools/fit_body: the logit is the bias and the "
-      "sum\n"
-      "# of each sign of the posture times its weight, or the weight of not knowing it. Heights are in units of the\n"
-      "# person's stature.\n";
+      "# How probable stances are by one frame (docs/tracking.md), by `vesalius_fit_body stances`: the logit is the\n"
+      "# bias and the sum of each sign of the posture times its weight, or the weight of not knowing it. Heights are in\n"
+      "# units of the person's stature.\n";
   for (const NamedRule& named : kStanceRules) {
     const StanceRule& rule = fitted.*named.rule;
     toml += fmt::format("\n[{}]\nbias = {:.4f}\n", named.name, rule.bias);
