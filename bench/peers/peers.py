@@ -100,8 +100,19 @@ def run_mediapipe(folder, frames, pose):
     return counts.figures(), without_colour
 
 
+def run(command):
+    """What a command prints. Where it fails, it has said why, and that is the end."""
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    except OSError as error:
+        sys.exit(f"{command[0]}: {error.strerror}")
+    if done.returncode != 0:
+        sys.exit(1)
+    return done.stdout
+
+
 def run_json(command):
-    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
+    return json.loads(run(command))
 
 
 def run_vesalius(folder, options, following):
@@ -141,8 +152,7 @@ def compare_joints(folder, pose, options):
     rows = {name: [] for name in JOINTS}
     with tempfile.TemporaryDirectory() as scratch:
         lines = os.path.join(scratch, "people.json")
-        subprocess.run([options.program, "detect", folder, "--model", options.model, "--json", lines], check=True,
-                       stdout=subprocess.DEVNULL)
+        run([options.program, "detect", folder, "--model", options.model, "--json", lines])
         with open(lines, encoding="utf-8") as file:
             found = [json.loads(line) for line in file]
     for frame in [line for line in found if line.get("people")][::options.step]:
