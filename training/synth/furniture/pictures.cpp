@@ -185,7 +185,7 @@ Vector2f draw_size(Carrier carrier, Random& random) {
 }  // namespace
 
 Furniture make_picture(Random& random) {
-  constexpr float kFarBehind_m = 0.002F;  // the picture lies before its board
+  constexpr float kBeforeBoard_m = 0.002F;
   const auto carrier = static_cast<Carrier>(random.below(4));
   const Vector2f size = draw_size(carrier, random);
   FurnitureBuilder board(random);
@@ -213,7 +213,7 @@ Furniture make_picture(Random& random) {
     default:
       paint_people(canvas, random);
   }
-  canvas.hang(placed_at({0.F, low, thick + kFarBehind_m}));
+  canvas.hang(placed_at({0.F, low, thick + kBeforeBoard_m}));
   return std::move(board.piece);
 }
 
