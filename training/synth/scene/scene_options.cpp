@@ -65,8 +65,8 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
       {"", 0.0, 1.0, "Probability that a person is in or behind an opening in a wall, whose edge hides a part."});
   visitor.option(prefix + "picture-probability", o.picture_probability,
                  {"", 0.0, 1.0,
-                  "Probability that posters, paintings, banners and screens with pictures, half of them of people, are "
-                  "at the walls."});
+                  "Probability that posters, paintings, banners and screens with pictures, two in five of them of "
+                  "people, are at the walls."});
   visitor.option(prefix + "border-share", o.border_share,
                  {"", 0.0, 1.0, "Share of people whom the left or right border of the picture is to cut."});
   visitor.option(prefix + "cut-share", o.cut_share,
