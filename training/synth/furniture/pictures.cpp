@@ -27,11 +27,8 @@ class Canvas {
   const Vector2f& size() const { return size_; }
 
   std::uint8_t colour(const Rgb& rgb) {
-    const auto channel = [&](std::uint8_t value) {
-      return static_cast<std::uint8_t>(std::min(255.F, glow_ * float(value)));
-    };
     Material material;
-    material.colour = material.second = {channel(rgb.r), channel(rgb.g), channel(rgb.b)};
+    material.colour = material.second = scaled(rgb, glow_);
     material.infrared = infrared_;
     return add_material(board_.piece.mesh, material);
   }

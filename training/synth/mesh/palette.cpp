@@ -82,6 +82,11 @@ Rgb mix(const Rgb& from, const Rgb& to, float share) {
   return {channel(from.r, to.r), channel(from.g, to.g), channel(from.b, to.b)};
 }
 
+Rgb scaled(const Rgb& colour, float factor) {
+  const auto channel = [&](std::uint8_t c) { return static_cast<std::uint8_t>(std::min(255.F, factor * float(c))); };
+  return {channel(colour.r), channel(colour.g), channel(colour.b)};
+}
+
 Rgb skin_colour(Random& random) { return mix({70, 45, 32}, {240, 205, 185}, float(random.uniform())); }
 
 }  // namespace vesalius::synth

@@ -18,6 +18,9 @@ Rgb skin_colour(Random& random);
 /// Returns the colour at a share of the way from one to another.
 Rgb mix(const Rgb& from, const Rgb& to, float share);
 
+/// Returns the colour darker or brighter by a factor, at most white.
+Rgb scaled(const Rgb& colour, float factor);
+
 /// Draws a float uniformly from [low, high). Calls stand in declarations or braces and never as two arguments of one
 /// call, because compilers choose the order of arguments.
 inline float between(double low, double high, Random& random) { return float(random.uniform(low, high)); }

@@ -211,11 +211,6 @@ Rgb draw_sky(const RoomShape& room, Random& random) {
   return {level(haze), level(0.5F * (1.F + haze)), level(1.F)};
 }
 
-Rgb dimmed(Rgb colour, float share) {
-  const auto channel = [&](std::uint8_t c) { return static_cast<std::uint8_t>(share * float(c)); };
-  return {channel(colour.r), channel(colour.g), channel(colour.b)};
-}
-
 /// Makes whole pieces black leather or lacquer, of which depth cameras see only blotches or nothing. The first mesh is
 /// the room.
 void darken_furniture(const SceneOptions& options, Scene& scene, Random& random) {
@@ -229,7 +224,7 @@ void darken_furniture(const SceneOptions& options, Scene& scene, Random& random)
     if (!chance(options.dark_to_the_eye, eye)) continue;
     const float left = between(0.05, 0.25, eye);
     for (Material& material : mesh.materials) {
-      for (Rgb* colour : {&material.colour, &material.second}) *colour = dimmed(*colour, left);
+      for (Rgb* colour : {&material.colour, &material.second}) *colour = scaled(*colour, left);
     }
   }
 }
