@@ -178,6 +178,21 @@ bool reaches_out(const std::vector<Person>& people, const Box& region, const Cam
   });
 }
 
+/// Returns whether half of a mask or more belongs to people who are found.
+bool is_of_others(const Mask& mask, const std::vector<Sighting>& sightings) {
+  int pixels = 0, of_others = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    ++pixels;
+    const bool taken = std::ranges::any_of(sightings, [&](const Sighting& sighting) {
+      const Mask& other = sighting.person.mask;
+      return other.same_size(mask) && other[i] != 0;
+    });
+    if (taken) ++of_others;
+  }
+  return 2 * of_others >= pixels;
+}
+
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
 
 }  // namespace
@@ -448,22 +463,28 @@ void PeopleTracker::State::smooth(Track& track, TrackedPerson& person, double ti
 /// Adds all who are followed to `out`.
 void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sighting_of,
                                 std::vector<Sighting> sightings, TrackedFrame& out) {
+  // Those who are not found first, while the masks of the others are still here.
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     Track& track = tracks[t];
-    if (sighting_of[t] < 0 && !is_sure(track)) continue;
-    TrackedPerson& told = out.people.emplace_back();
-    if (sighting_of[t] >= 0) {
-      Sighting& sighting = sightings[static_cast<std::size_t>(sighting_of[t])];
-      const std::optional<Posture> posture = take_stance(frame, track, &sighting.person, out);
-      told = describe(track);
-      told.posture = posture;
-      told.person = std::move(sighting.person);
-    } else {
-      if (track.rests) track.stance.hold(out.time_s);
-      take_stance(frame, track, nullptr, out);
-      told = describe_unseen(track, body, fitter.get(), out.time_s);
-      if (track.rests) show_resting(track, frame, told);
+    if (sighting_of[t] >= 0 || !is_sure(track)) continue;
+    TrackedPerson& told = out.people.emplace_back(describe_unseen(track, body, fitter.get(), out.time_s));
+    if (track.rests) {
+      track.stance.hold(out.time_s);
+      show_resting(track, frame, told);
     }
+    const bool shown = track.rests && !is_of_others(told.person.mask, sightings);
+    told.posture = take_stance(frame, track, shown ? &told.person : nullptr, out);
+    told.stance = track.stance.stance();
+    smooth(track, told, out.time_s);
+  }
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (sighting_of[t] < 0) continue;
+    Track& track = tracks[t];
+    Sighting& sighting = sightings[static_cast<std::size_t>(sighting_of[t])];
+    const std::optional<Posture> posture = take_stance(frame, track, &sighting.person, out);
+    TrackedPerson& told = out.people.emplace_back(describe(track));
+    told.posture = posture;
+    told.person = std::move(sighting.person);
     smooth(track, told, out.time_s);
   }
   std::ranges::sort(out.people, {}, &TrackedPerson::id);

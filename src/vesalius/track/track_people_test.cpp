@@ -35,6 +35,7 @@ struct Actor {
   float score = 0.95F;
   float size = 1.F;
   bool found = true;
+  bool lies = false;  ///< on a side, with the hips as only parts in sight
 };
 
 /// A frame with boards before a wall, the nearer ones in front.
@@ -59,7 +60,9 @@ class Stage {
   void draw(const Actor& actor, std::uint8_t index) {
     const auto z_mm = static_cast<std::uint16_t>(actor.trunk.z() * 1e3F);
     const Eigen::Vector2f at = frame.camera.pixel(actor.trunk);
-    const float half_u = 0.22F / actor.trunk.z() * frame.camera.fx, half_v = 0.7F / actor.trunk.z() * frame.camera.fy;
+    const float wide_m = actor.lies ? 0.7F : 0.22F, high_m = actor.lies ? 0.22F : 0.7F;
+    const float half_u = wide_m / actor.trunk.z() * frame.camera.fx;
+    const float half_v = high_m / actor.trunk.z() * frame.camera.fy;
     for (int v = 0; v < frame.depth.height(); ++v) {
       for (int u = 0; u < frame.depth.width(); ++u) {
         const bool inside =
@@ -94,9 +97,11 @@ class Stage {
       p.confidence = 0.8F;
       ++person.skeleton.found;
     };
-    part("l_chest", 0.1F, -0.2F), part("r_chest", -0.1F, -0.2F);
     part("l_hips", 0.1F, 0.2F), part("r_hips", -0.1F, 0.2F);
-    part("neck", 0.F, -0.4F), part("l_face_bottom", 0.03F, -0.55F), part("r_face_bottom", -0.03F, -0.55F);
+    if (!actor.lies) {
+      part("l_chest", 0.1F, -0.2F), part("r_chest", -0.1F, -0.2F);
+      part("neck", 0.F, -0.4F), part("l_face_bottom", 0.03F, -0.55F), part("r_face_bottom", -0.03F, -0.55F);
+    }
     person.joints = derive_joints(body, person.skeleton);
     people.push_back(std::move(person));
     actor_of.push_back(index);
@@ -671,6 +676,39 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   EXPECT_EQ(events[0].id, 1);
   EXPECT_EQ(events[0].stance, Stance::standing);
   EXPECT_EQ(events[0].before, Stance::unknown);
+}
+
+TEST(TrackPeople, WhoFallsIsToldByThePixelsThatStayThoughNotFound) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  std::vector<Stance> told;
+  double time_s = 0.0;
+  const auto show = [&](const Actor& actor, int frames) {
+    TrackedFrame tracked;
+    for (int i = 0; i < frames; ++i, time_s += kFrame_s) {
+      Stage stage({actor});
+      stage.frame.time_s = time_s;
+      tracked = tracker.update(stage.frame, {stage.people, {{Vector3f::UnitY(), 1.F, 4.F}}});
+      for (const StanceEvent& event : tracked.events) told.push_back(event.stance);
+    }
+    return tracked.people.at(0);
+  };
+  Actor actor;
+  show(actor, 60);
+  actor.lies = true;
+  for (int i = 0; i < 8; ++i) {
+    actor.trunk.y() += 0.1F;
+    show(actor, 1);
+  }
+  show(actor, 2);
+  actor.found = false;
+  const TrackedPerson hidden = show(actor, 60);
+  EXPECT_EQ(hidden.id, 1);
+  EXPECT_EQ(hidden.state, TrackState::hidden);
+  EXPECT_EQ(hidden.stance, Stance::fallen);
+  ASSERT_TRUE(hidden.posture && hidden.posture->top_m);
+  EXPECT_NEAR(*hidden.posture->top_m, 0.2F + 0.22F, 0.03F);
+  EXPECT_FALSE(hidden.posture->chest_m);
+  EXPECT_EQ(told, (std::vector{Stance::standing, Stance::fallen}));
 }
 
 TEST(TrackPeople, WhoIsNearTheFloorIsFollowedWhileSomethingIsThere) {

@@ -27,9 +27,14 @@ constexpr double kUp_s = 0.2;        // upright for so long, nobody lies any mor
 constexpr double kLong_s = 10.0;     // on the floor, without a fall that was seen
 constexpr double kStanceForgotten_s = 5.0;
 
+/// Returns the trunk's height over the floor by chest and hips. Where neither is seen, that of the highest pixels, if
+/// the trunk of somebody on the floor may be so high.
 std::optional<float> trunk_height_m(const Posture& posture) {
-  if (!posture.chest_m || !posture.hips_m) return posture.chest_m;
-  return 0.5F * (*posture.chest_m + *posture.hips_m);
+  if (posture.chest_m && posture.hips_m) return 0.5F * (*posture.chest_m + *posture.hips_m);
+  if (posture.chest_m) return posture.chest_m;
+  if (posture.hips_m) return posture.hips_m;
+  if (posture.top_m && *posture.top_m <= kOnFloor_m) return posture.top_m;
+  return std::nullopt;
 }
 
 using Eigen::Vector3f;
@@ -155,7 +160,11 @@ void TrackStance::advance(const Posture& posture, double time_s) {
       ++path.heights;
     }
   }
-  if (posture.chest_m) down_ = *posture.chest_m <= kUpright_m;
+  if (posture.chest_m) {
+    down_ = *posture.chest_m <= kUpright_m;
+  } else if (posture.top_m) {
+    down_ = *posture.top_m <= kUpright_m;
+  }
   near_floor_s_ += std::min(passed_s, kMostEvidence_s);
   if (of.lying < 0.5F && posture.chest_m && !down_) {
     if (!rose_s_) rose_s_ = time_s;
@@ -189,7 +198,8 @@ void TrackStance::hold(double time_s) {
 }
 
 std::optional<std::pair<Stance, double>> TrackStance::update(const std::optional<Posture>& posture, double time_s) {
-  if (posture) {
+  const bool by_pixels_alone = posture && posture->top_m && !posture->chest_m;
+  if (posture && (seen_s_ || !by_pixels_alone)) {
     advance(*posture, time_s);
     const auto best = std::ranges::max_element(paths_, {}, &Path::log_odds);
     double next = -std::numeric_limits<double>::max();
@@ -218,7 +228,6 @@ std::optional<Posture> posture_of(const Person& person, const Frame& frame, cons
   std::optional<Vector3f> chest = seen("chest"), hips = seen("hips"), knees = seen("knee"), head = seen("face_top");
   if (!head) head = seen("face_bottom");
   const std::optional<Vector3f> top = head ? head : neck;
-  if (!chest && !top) return std::nullopt;
   Posture posture;
   if (posed && posed->fitted.stature_m > 0.F) posture.stature_m = posed->fitted.stature_m;
   Place above;
@@ -232,11 +241,12 @@ std::optional<Posture> posture_of(const Person& person, const Frame& frame, cons
   posture.thighs_up = slope(knees, hips, up);
   if (chest && top) posture.pitch_m = up.dot(*top - *chest);
   if (height_m) {
-    const std::optional<Vector3f> trunk = chest ? chest : top;
-    posture.chest_m = *height_m + up.dot(*trunk);
+    if (const std::optional<Vector3f> trunk = chest ? chest : top) posture.chest_m = *height_m + up.dot(*trunk);
     if (hips) posture.hips_m = *height_m + up.dot(*hips);
   }
   measure_pixels(person, frame, up, height_m, posture);
+  // Pixels higher up without an upper body may be a piece of somebody who stands.
+  if (!chest && !top && (!posture.top_m || *posture.top_m > kUpright_m)) return std::nullopt;
   return posture;
 }
 

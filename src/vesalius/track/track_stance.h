@@ -21,7 +21,8 @@ inline constexpr double kMostEvidence_s = 0.2;
 /// stance seldom. A stance is told when it is clearly likelier than any other, and then counts from the frame in which
 /// it began. Whoever lies on the floor within 2 seconds of being upright has fallen, unless seen to sit there before,
 /// and so has whoever lies there for 10 seconds; who lies as high as on a bed has not. Whoever is up again for a fifth
-/// of a second does not lie. Without evidence for 5 seconds the stance is unknown.
+/// of a second does not lie. Pixels alone tell only of people whose chest, neck or head were seen before. Without
+/// evidence for 5 seconds the stance is unknown.
 class TrackStance {
  public:
   /// Takes the posture of a frame, if there is one. Returns the new stance and when it began, if it changed.
@@ -66,7 +67,8 @@ struct PosedBody {
   const FleshModel& flesh;
 };
 
-/// Returns the posture of a person; nothing if neither chest nor neck nor head are seen. `up` is the unit vector away
+/// Returns the posture of a person; if neither chest nor neck nor head are seen, that of the pixels where all of them
+/// are near the floor, and else nothing. `up` is the unit vector away
 /// from the ground in the optical frame, `height_m` the camera's over the floor, if that is known; without it no
 /// heights are. Where hips or knees are not seen, those of the fitted body count if they are rather within 10 cm of
 /// the truth than not. What the border of the view cuts off is not known.

@@ -101,6 +101,24 @@ TEST_F(StanceOverTime, WhoFellIsToldThoughNeitherHipsNorLegsAreSeen) {
   EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::fallen}));
 }
 
+TEST_F(StanceOverTime, WhoFellIsToldByThePixelsAlone) {
+  Posture pixels;
+  pixels.top_m = kOnFloor.top_m;
+  pixels.vertical_m = kOnFloor.vertical_m;
+  show(kStanding, 2.0);
+  show(pixels, 2.0);
+  EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::fallen}));
+  EXPECT_TRUE(stance.down());
+}
+
+TEST_F(StanceOverTime, PixelsAloneTellNothingOfWhoWasNeverSeen) {
+  Posture pixels;
+  pixels.top_m = kOnFloor.top_m;
+  pixels.vertical_m = kOnFloor.vertical_m;
+  show(pixels, 20.0);
+  EXPECT_EQ(stances(), std::vector<Stance>{}) << "it may be a bag";
+}
+
 TEST_F(StanceOverTime, AFewWrongFramesChangeNothing) {
   show(kStanding, 1.0);
   for (int i = 0; i < 30; ++i) {
@@ -316,17 +334,30 @@ TEST(PostureOf, TakesHipsAndKneesOfTheFittedBodyWhereItIsTrusted) {
   EXPECT_FALSE(posture_of(trunk, frame, paper_body(), kUp, 0.6F, posed)->hips_m);
 }
 
-TEST(PostureOf, NeedsSeenPartsOfTheUpperBody) {
+TEST(PostureOf, NeedsSeenPartsOfTheUpperBodyOrPixelsNearTheFloor) {
   const Frame frame = frame_at(2.F);
   const Vector3f at(0.F, 0.F, 2.F);
-  EXPECT_TRUE(posture_of(person_with({{"neck", at}}), frame, paper_body(), kUp, 1.F));
-  EXPECT_FALSE(posture_of(person_with({{"l_hips", at}, {"l_knee", at}}), frame, paper_body(), kUp, 1.F));
+  const auto posture = [&](const Person& person, std::optional<float> height_m = 1.F) {
+    return posture_of(person, frame, paper_body(), kUp, height_m);
+  };
+  EXPECT_TRUE(posture(person_with({{"neck", at}})));
+  const Person legs = person_with({{"l_hips", at}, {"l_knee", at}});
+  EXPECT_FALSE(posture(legs));
+  // At 2 m a pixel is 4 cm high, and row 23.5 is level with the camera, 1 m above the floor.
+  const Box inside{20, 36, 8, 8}, high{20, 28, 8, 12}, cut{20, 0, 8, 40};
+  const std::optional<Posture> pixels = posture(covering(legs, inside));
+  ASSERT_TRUE(pixels);
+  EXPECT_TRUE(pixels->top_m && pixels->vertical_m);
+  EXPECT_FALSE(pixels->chest_m || pixels->pitch_m || pixels->trunk_up);
+  EXPECT_FALSE(posture(covering(legs, high))) << "the trunk may be hidden above them";
+  EXPECT_FALSE(posture(covering(legs, cut))) << "who knows what is above the border";
+  EXPECT_FALSE(posture(covering(legs, inside), std::nullopt)) << "nor how high they are without floor";
   Person guessed = person_with({{"neck", at}});
   for (SkeletonPart& part : guessed.skeleton.parts) {
     if (part.state == State::observed) part.state = State::predicted;
   }
-  EXPECT_FALSE(posture_of(guessed, frame, paper_body(), kUp, 1.F));
-  EXPECT_FALSE(posture_of({}, frame, paper_body(), kUp, 1.F));
+  EXPECT_FALSE(posture(guessed));
+  EXPECT_FALSE(posture({}));
 }
 
 }  // namespace
