@@ -178,19 +178,19 @@ bool reaches_out(const std::vector<Person>& people, const Box& region, const Cam
   });
 }
 
-/// Returns whether half of a mask or more belongs to people who are found.
-bool is_of_others(const Mask& mask, const std::vector<Sighting>& sightings) {
-  int pixels = 0, of_others = 0;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0) continue;
-    ++pixels;
-    const bool taken = std::ranges::any_of(sightings, [&](const Sighting& sighting) {
-      const Mask& other = sighting.person.mask;
-      return other.same_size(mask) && other[i] != 0;
-    });
-    if (taken) ++of_others;
-  }
-  return 2 * of_others >= pixels;
+/// Returns whether a mask is a piece of somebody who is found: half of it or more lies in a mask twice as large.
+bool is_piece(const Mask& mask, const std::vector<Sighting>& sightings) {
+  return std::ranges::any_of(sightings, [&](const Sighting& sighting) {
+    const Mask& other = sighting.person.mask;
+    if (!other.same_size(mask)) return false;
+    int pixels = 0, shared = 0, of_other = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      pixels += mask[i] != 0 ? 1 : 0;
+      of_other += other[i] != 0 ? 1 : 0;
+      shared += mask[i] != 0 && other[i] != 0 ? 1 : 0;
+    }
+    return 2 * shared >= pixels && of_other >= 2 * pixels;
+  });
 }
 
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
@@ -472,7 +472,7 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
       track.stance.hold(out.time_s);
       show_resting(track, frame, told);
     }
-    const bool shown = track.rests && !is_of_others(told.person.mask, sightings);
+    const bool shown = track.rests && !is_piece(told.person.mask, sightings);
     told.posture = take_stance(frame, track, shown ? &told.person : nullptr, out);
     told.stance = track.stance.stance();
     smooth(track, told, out.time_s);
