@@ -679,36 +679,55 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
 }
 
 TEST(TrackPeople, WhoFallsIsToldByThePixelsThatStayThoughNotFound) {
-  PeopleTracker tracker(paper_body(), {}, hue());
-  std::vector<Stance> told;
-  double time_s = 0.0;
-  const auto show = [&](const Actor& actor, int frames) {
-    TrackedFrame tracked;
-    for (int i = 0; i < frames; ++i, time_s += kFrame_s) {
-      Stage stage({actor});
-      stage.frame.time_s = time_s;
-      tracked = tracker.update(stage.frame, {stage.people, {{Vector3f::UnitY(), 1.F, 4.F}}});
-      for (const StanceEvent& event : tracked.events) told.push_back(event.stance);
+  for (const bool piece : {false, true}) {
+    SCOPED_TRACE(piece ? "a piece of somebody else" : "alone");
+    PeopleTracker tracker(paper_body(), {}, hue());
+    std::vector<Stance> told;
+    double time_s = 0.0;
+    Actor upright, falls;
+    upright.trunk.x() = -1.2F;
+    upright.colour = {30, 30, 200};
+    Mask of_falls;
+    const auto show = [&](int frames) {
+      TrackedFrame tracked;
+      for (int i = 0; i < frames; ++i, time_s += kFrame_s) {
+        Stage stage({upright, falls});
+        stage.frame.time_s = time_s;
+        if (falls.found) {
+          of_falls = stage.people.at(1).mask;
+        } else if (piece) {
+          Mask& larger = stage.people.at(0).mask;
+          for (std::size_t p = 0; p < larger.size(); ++p) larger[p] |= of_falls[p];
+        }
+        tracked = tracker.update(stage.frame, {stage.people, {{Vector3f::UnitY(), 1.F, 4.F}}});
+        for (const StanceEvent& event : tracked.events) {
+          if (event.id == 2) told.push_back(event.stance);
+        }
+      }
+      return tracked.people.at(1);
+    };
+    show(60);
+    falls.lies = true;
+    for (int i = 0; i < 8; ++i) {
+      falls.trunk.y() += 0.1F;
+      show(1);
     }
-    return tracked.people.at(0);
-  };
-  Actor actor;
-  show(actor, 60);
-  actor.lies = true;
-  for (int i = 0; i < 8; ++i) {
-    actor.trunk.y() += 0.1F;
-    show(actor, 1);
+    show(2);
+    falls.found = false;
+    const TrackedPerson hidden = show(60);
+    EXPECT_EQ(hidden.id, 2);
+    EXPECT_EQ(hidden.state, TrackState::hidden);
+    if (piece) {
+      EXPECT_FALSE(hidden.posture);
+      EXPECT_EQ(told, std::vector{Stance::standing});
+      continue;
+    }
+    EXPECT_EQ(hidden.stance, Stance::fallen);
+    ASSERT_TRUE(hidden.posture && hidden.posture->top_m);
+    EXPECT_NEAR(*hidden.posture->top_m, 0.2F + 0.22F, 0.03F);
+    EXPECT_FALSE(hidden.posture->chest_m);
+    EXPECT_EQ(told, (std::vector{Stance::standing, Stance::fallen}));
   }
-  show(actor, 2);
-  actor.found = false;
-  const TrackedPerson hidden = show(actor, 60);
-  EXPECT_EQ(hidden.id, 1);
-  EXPECT_EQ(hidden.state, TrackState::hidden);
-  EXPECT_EQ(hidden.stance, Stance::fallen);
-  ASSERT_TRUE(hidden.posture && hidden.posture->top_m);
-  EXPECT_NEAR(*hidden.posture->top_m, 0.2F + 0.22F, 0.03F);
-  EXPECT_FALSE(hidden.posture->chest_m);
-  EXPECT_EQ(told, (std::vector{Stance::standing, Stance::fallen}));
 }
 
 TEST(TrackPeople, WhoIsNearTheFloorIsFollowedWhileSomethingIsThere) {
