@@ -268,6 +268,7 @@ def pages_of(docs, names):
 
 def press_ctrl_c(script):
     """Runs a viewer until its page was there, then ends it as Ctrl-C does: a signal to all that the terminal runs."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background of a script ignores it
     with subprocess.Popen(["bash", script], stdout=subprocess.PIPE, text=True, start_new_session=True) as viewer:
         for line in viewer.stdout:
             print(line, end="", flush=True)
