@@ -178,18 +178,17 @@ bool reaches_out(const std::vector<Person>& people, const Box& region, const Cam
   });
 }
 
-/// Returns whether a mask is a piece of somebody who is found: half of it or more lies in a mask twice as large.
-bool is_piece(const Mask& mask, const std::vector<Sighting>& sightings) {
+/// Returns whether somebody's mask is a piece of somebody who is found: half of it or more lies in a mask twice as
+/// large.
+bool is_piece(const Person& person, const std::vector<Sighting>& sightings) {
+  const Mask mask = crop(person.mask, person.box);
+  const auto pixels = std::ranges::count_if(mask, [](std::uint8_t pixel) { return pixel != 0; });
   return std::ranges::any_of(sightings, [&](const Sighting& sighting) {
-    const Mask& other = sighting.person.mask;
-    if (!other.same_size(mask)) return false;
-    int pixels = 0, shared = 0, of_other = 0;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-      pixels += mask[i] != 0 ? 1 : 0;
-      of_other += other[i] != 0 ? 1 : 0;
-      shared += mask[i] != 0 && other[i] != 0 ? 1 : 0;
-    }
-    return 2 * shared >= pixels && of_other >= 2 * pixels;
+    if (sighting.place.pixels() < 2 * pixels || !sighting.person.mask.same_size(person.mask)) return false;
+    const Mask other = crop(sighting.person.mask, person.box);
+    long shared = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) shared += mask[i] != 0 && other[i] != 0 ? 1 : 0;
+    return 2 * shared >= pixels;
   });
 }
 
@@ -472,7 +471,7 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
       track.stance.hold(out.time_s);
       show_resting(track, frame, told);
     }
-    const bool shown = track.rests && !is_piece(told.person.mask, sightings);
+    const bool shown = track.rests && !is_piece(told.person, sightings);
     told.posture = take_stance(frame, track, shown ? &told.person : nullptr, out);
     told.stance = track.stance.stance();
     smooth(track, told, out.time_s);

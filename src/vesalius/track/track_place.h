@@ -25,6 +25,8 @@ class TrackPlace {
   bool empty() const { return mask_.empty(); }
   /// Returns the smallest box around the person, empty if the place is.
   const Box& box() const { return box_; }
+  /// Returns the number of the person's pixels.
+  long pixels() const { return pixels_; }
   /// Returns whether the person reached to the border of the view, where people leave it.
   bool at_border() const { return at_border_; }
 

@@ -160,11 +160,7 @@ void TrackStance::advance(const Posture& posture, double time_s) {
       ++path.heights;
     }
   }
-  if (posture.chest_m) {
-    down_ = *posture.chest_m <= kUpright_m;
-  } else if (posture.top_m) {
-    down_ = *posture.top_m <= kUpright_m;
-  }
+  if (const auto height_m = posture.chest_m ? posture.chest_m : posture.top_m) down_ = *height_m <= kUpright_m;
   near_floor_s_ += std::min(passed_s, kMostEvidence_s);
   if (of.lying < 0.5F && posture.chest_m && !down_) {
     if (!rose_s_) rose_s_ = time_s;

@@ -68,10 +68,10 @@ struct PosedBody {
 };
 
 /// Returns the posture of a person; if neither chest nor neck nor head are seen, that of the pixels where all of them
-/// are near the floor, and else nothing. `up` is the unit vector away
-/// from the ground in the optical frame, `height_m` the camera's over the floor, if that is known; without it no
-/// heights are. Where hips or knees are not seen, those of the fitted body count if they are rather within 10 cm of
-/// the truth than not. What the border of the view cuts off is not known.
+/// are near the floor, and else nothing. `up` is the unit vector away from the ground in the optical frame, `height_m`
+/// the camera's over the floor, if that is known; without it no heights are. Where hips or knees are not seen, those of
+/// the fitted body count if they are rather within 10 cm of the truth than not. What the border of the view cuts off is
+/// not known.
 std::optional<Posture> posture_of(const Person& person, const Frame& frame, const BodyModel& body,
                                   const Eigen::Vector3f& up, std::optional<float> height_m,
                                   const std::optional<PosedBody>& posed = {});
