@@ -231,6 +231,10 @@ DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool o
   }
   const double mm_per_unit = 1000.0 / units_per_m;
   DepthImage depth(picture.width(), picture.height());
+  if (mm_per_unit == 1.0) {
+    std::ranges::replace_copy(picture.whole, depth.begin(), kNoReading, std::uint16_t{0});
+    return depth;
+  }
   std::ranges::transform(picture.whole, depth.begin(), [mm_per_unit](std::uint16_t units) {
     const double mm = std::round(units * mm_per_unit);
     return mm > kMost || units == kNoReading ? std::uint16_t{0} : static_cast<std::uint16_t>(mm);

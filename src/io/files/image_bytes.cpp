@@ -1,9 +1,9 @@
 #include "io/files/image_bytes.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 
@@ -26,18 +26,8 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
   return value;
 }
 
-std::uint32_t crc32(std::string_view bytes) {
-  static constexpr auto table = [] {
-    std::array<std::uint32_t, 256> t{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      t[i] = i;
-      for (int bit = 0; bit < 8; ++bit) t[i] = (t[i] & 1U) ? 0xEDB88320U ^ (t[i] >> 1U) : t[i] >> 1U;
-    }
-    return t;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (const char c : bytes) crc = table[(crc ^ static_cast<unsigned char>(c)) & 0xFFU] ^ (crc >> 8U);
-  return ~crc;
+std::uint32_t checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 /// A chunk of a PNG. Its checksum has been verified.
@@ -51,7 +41,7 @@ Chunk chunk_at(std::string_view bytes, std::size_t at, const std::string& name) 
     throw Error(fmt::format("{}: truncated PNG: file ends at byte {} before the end chunk", name, bytes.size()));
   }
   const std::size_t length = big_endian(bytes, at, 4);
-  if (crc32(bytes.substr(at + 4, length + 4)) != big_endian(bytes, at + 8 + length, 4)) {
+  if (checksum(bytes.substr(at + 4, length + 4)) != big_endian(bytes, at + 8 + length, 4)) {
     throw Error(fmt::format("{}: damaged PNG: wrong checksum of the chunk at byte {}", name, at));
   }
   return {bytes.substr(at + 4, 4), bytes.substr(at + 8, length), bytes.substr(at, length + 12)};
