@@ -34,7 +34,4 @@ class NetworkLabeller : public Labeller {
   std::unique_ptr<const Working> working_;
 };
 
-/// Writes to `shares` the probabilities, in 1/`whole` and rounded, that `count` logits stand for (kLogitUnit).
-void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uint16_t* shares);
-
 }  // namespace vesalius

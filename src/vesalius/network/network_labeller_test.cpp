@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_targets.h"
 #include "vesalius/error.h"
 #include "vesalius/model.h"
 #include "vesalius/network/network_input.h"
@@ -80,32 +80,26 @@ TEST(NetworkInput, IsTheSameForHalfTheFocalLengthAtHalfTheDistance) {
   EXPECT_EQ(here.values, there.values);
 }
 
+TEST(NetworkInput, IsTheSameForEveryInstructionSet) {
+  Random random(4, 0);
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{3, 6}, std::pair{21, 9}, std::pair{75, 53}}) {
+    DepthImage depth = random_depth(random, width, height);
+    depth(0, 0) = 65535;
+    depth(width - 1, height - 1) = 1;
+    NetworkInput expected;
+    for_each_target([&](const char* target) {
+      NetworkInput input;
+      fill_network_input(depth, 525.F, input);
+      if (expected.values.empty()) expected = input;
+      EXPECT_EQ(input.values, expected.values) << target << ' ' << width << 'x' << height;
+    });
+  }
+}
+
 TEST(NetworkInput, IsClampedWhereCloser) {
   NetworkInput input;
   fill_network_input(DepthImage(8, 8, 1), 600.F, input);
   EXPECT_EQ(input_at(input, 4, 4)[0], 255);
-}
-
-TEST(SoftmaxInSteps, IsThatOfRealNumbersRounded) {
-  Random random(3, 0);
-  for (int trial = 0; trial < 200; ++trial) {
-    std::array<std::int16_t, 26> logits;
-    for (std::int16_t& logit : logits) logit = static_cast<std::int16_t>(int(random.below(4000)) - 2000);
-    std::array<std::uint16_t, 26> shares;
-    softmax_in_steps(logits.data(), 26, 2040, shares.data());
-    double sum = 0.0;
-    for (const std::int16_t logit : logits) sum += std::exp(double(logit) / 256.0);
-    for (std::size_t c = 0; c < 26; ++c) {
-      EXPECT_NEAR(shares[c], 2040.0 * std::exp(double(logits[c]) / 256.0) / sum, 0.6) << c;
-    }
-  }
-}
-
-TEST(SoftmaxInSteps, BearsTheLargestDifferences) {
-  const std::array<std::int16_t, 3> logits{-32768, 32767, 32767};
-  std::array<std::uint16_t, 3> shares;
-  softmax_in_steps(logits.data(), 3, 2040, shares.data());
-  EXPECT_THAT(shares, ElementsAre(0, 1020, 1020));
 }
 
 TEST(NetworkLabeller, GivesTheSameForAnyNumberOfThreads) {
