@@ -10,16 +10,26 @@
 namespace vesalius {
 namespace {
 
-/// The sums over the pixels of one cluster. They are double so that distant clusters keep their covariance.
+/// The sums over the pixels of one cluster. They are double so that distant clusters keep their covariance, and each by
+/// itself so that they stay in registers.
 struct Moments {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  double x = 0.0, y = 0.0, z = 0.0;
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
 
   void add(const Eigen::Vector3f& point) {
     const Eigen::Vector3d p = point.cast<double>();
-    sum += p;
-    products += p * p.transpose();
+    x += p.x();
+    y += p.y();
+    z += p.z();
+    xx += p.x() * p.x();
+    xy += p.x() * p.y();
+    xz += p.x() * p.z();
+    yy += p.y() * p.y();
+    yz += p.y() * p.z();
+    zz += p.z() * p.z();
   }
+  Eigen::Vector3d sum() const { return {x, y, z}; }
+  Eigen::Matrix3d products() const { return Eigen::Matrix3d{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}; }
 };
 
 class ClusterFinder {
@@ -35,7 +45,7 @@ class ClusterFinder {
     for (int v = within_.v; v < within_.v + within_.height; ++v) {
       const std::uint8_t* labels = labels_.row(v);
       for (int u = within_.u; u < within_.u + within_.width; ++u) {
-        if (labels[u] >= body_.part_count()) continue;  // most pixels
+        if (labels[u] >= parts_) continue;  // most pixels
         if (out.index(u, v) != kNone || depth_(u, v) == 0) continue;
         const PartCluster cluster = fill(u, v, static_cast<std::int32_t>(kept.size()), out.index);
         if (feasible(cluster)) {
@@ -52,8 +62,6 @@ class ClusterFinder {
  private:
   static constexpr std::int32_t kNone = -1;
   static constexpr std::int32_t kDropped = -2;
-
-  bool labelled(int u, int v) const { return labels_(u, v) < body_.part_count() && depth_(u, v) != 0; }
 
   Eigen::Vector3f point(int u, int v) const { return point_at(camera_, depth_, u, v); }
 
@@ -80,10 +88,13 @@ class ClusterFinder {
       moments.add(here);
       area += double(here.z()) * double(here.z());
       for (int nv = std::max(top, pv - 1); nv <= std::min(bottom, pv + 1); ++nv) {
+        std::int32_t* ids = index.row(nv);
+        const std::uint8_t* labels = labels_.row(nv);
+        const std::uint16_t* depth = depth_.row(nv);
         for (int nu = std::max(left, pu - 1); nu <= std::min(right, pu + 1); ++nu) {
-          if (index(nu, nv) != kNone || labels_(nu, nv) != cluster.label || !labelled(nu, nv)) continue;
+          if (ids[nu] != kNone || labels[nu] != cluster.label || depth[nu] == 0) continue;
           if (!connected(here, point(nu, nv))) continue;
-          index(nu, nv) = id;
+          ids[nu] = id;
           queue_.push_back(nv * labels_.width() + nu);
         }
       }
@@ -96,8 +107,8 @@ class ClusterFinder {
 
   static void summarise(const Moments& moments, PartCluster& cluster) {
     const double n = cluster.pixels;
-    const Eigen::Vector3d mean = moments.sum / n;
-    const Eigen::Matrix3d covariance = moments.products / n - mean * mean.transpose();
+    const Eigen::Vector3d mean = moments.sum() / n;
+    const Eigen::Matrix3d covariance = moments.products() / n - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
     cluster.centroid = mean.cast<float>();
     cluster.covariance = covariance.cast<float>();
@@ -135,6 +146,7 @@ class ClusterFinder {
   const DepthImage& depth_;
   const Camera& camera_;
   const BodyModel& body_;
+  const int parts_ = body_.part_count();
   const ClusterOptions& options_;
   const Box& within_;
   std::vector<int> queue_;  ///< row-major pixels of the cluster being filled

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 
 #include "vesalius/base/pixel_grid.h"
@@ -31,9 +30,13 @@ float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts
     for (int u = 0; u < posteriors.width; ++u) {
       if (inside(u, v) == 0) continue;
       const std::uint16_t* sums = posteriors.at(u, v);
-      const double body = std::accumulate(sums, sums + parts, 0.0);
-      if (body == 0.0) continue;
-      sum += *std::max_element(sums, sums + parts) / body;
+      int body = 0, most = 0;  // whole numbers, which fill vectors
+      for (int part = 0; part < parts; ++part) {
+        body += sums[part];
+        most = std::max<int>(most, sums[part]);
+      }
+      if (body == 0) continue;
+      sum += most / double(body);
       ++pixels;
     }
   }

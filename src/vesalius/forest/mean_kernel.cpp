@@ -68,8 +68,9 @@ class RowMean {
     for (Sums& sums : sums_) sums.u = -1;
     for (int u = 0; u < depth_.width(); ++u) {
       std::uint16_t* to = out_.at(u, v);
-      if (!in_.settled.empty() && in_.settled(u, v) != 0) {
-        std::copy_n(in_.at(u, v), classes_, to);
+      if (const int settled = SettledFrom(u, v); settled > 0) {
+        std::copy_n(in_.at(u, v), static_cast<std::size_t>(settled) * classes_, to);
+        u += settled - 1;
       } else if (depth_(u, v) == 0) {
         std::fill_n(to, classes_, std::uint16_t{0});
       } else if (whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v))) {
@@ -98,6 +99,13 @@ class RowMean {
   template <class Set>
   Set& SetOf(std::vector<Set>& sets, int at) const {
     return sets[at % window_.spacing];
+  }
+
+  /// Returns how many pixels in a row are settled, from this one on.
+  int SettledFrom(int u, int v) const {
+    if (in_.settled.empty()) return 0;
+    const std::uint8_t *row = in_.settled.row(v), *first = row + u;
+    return int(std::find(first, row + in_.width, std::uint8_t{0}) - first);
   }
 
   /// Finds, over the window's rows, each column's sum of posteriors and its nearest and furthest depth; a hole counts
