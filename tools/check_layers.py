@@ -18,6 +18,7 @@ besides. PUBLIC says whose a header of include/vesalius/ is: `base/image.h` belo
 Usage: check_layers.py [ROOT]. Prints one line for each violation; exit code 1 if there are any.
 """
 
+import argparse
 import re
 import sys
 from dataclasses import dataclass
@@ -294,8 +295,9 @@ class Checker:
 
 
 def main():
-    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
-    violations = Checker(root).check()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).parent.parent, help="default: this repository")
+    violations = Checker(parser.parse_args().root.resolve()).check()
     print("\n".join(violations) or "layers: all includes go downwards")
     return 1 if violations else 0
 
