@@ -15,7 +15,7 @@ besides. PUBLIC says whose a header of include/vesalius/ is: `base/image.h` belo
    includes of the product what is PUBLIC, and what tools/private_headers.txt lists with a reason; unit tests include all.
 7. A folder has at most 25 units besides tests, and at most the lines of C++ that tools/line_budget.txt grants it.
 
-Usage: check_layers.py [ROOT]. Prints one line for each violation; exit code 1 if there are any.
+Prints one line for each violation; exit code 1 if there are any.
 """
 
 import argparse
