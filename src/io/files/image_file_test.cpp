@@ -185,6 +185,18 @@ TEST(ImageFile, RefusesTooFewRows) {
   EXPECT_THAT(error_of([&] { decode_depth_png(forged, "d.png"); }), HasSubstr("d.png: damaged picture"));
 }
 
+TEST(ImageFile, RefusesDataWhoseOwnChecksumIsWrong) {
+  const DepthImage depth = random_frame("f", 4, 30, 40).depth;
+  const std::string png = encode_png(depth);  // 33 bytes of signature and header, one chunk of data, the end's 12
+  std::string data = png.substr(41, png.size() - 41 - 4 - 12);
+  const auto decoded = [&] {
+    return decode_depth_png(png.substr(0, 33) + chunk("IDAT", data) + chunk("IEND", ""), "d.png");
+  };
+  EXPECT_EQ(decoded(), depth);
+  data.back() = static_cast<char>(data.back() + 1);
+  EXPECT_THAT(error_of(decoded), HasSubstr("d.png: damaged picture"));
+}
+
 TEST(ImageFile, RefusesToWriteAnEmptyPicture) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { write_png(DepthImage(), folder / "d.png"); }), HasSubstr("d.png: picture cannot"));
