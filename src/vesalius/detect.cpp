@@ -292,18 +292,43 @@ bool is_followed(const Candidate& candidate, const Prior& prior) {
   return !known.flesh.empty() && known.odds > 1.F;
 }
 
+/// Returns whether a candidate whose pixels vote for the middle of somebody else is a piece of that person: only what
+/// earlier frames say makes it a second one, or they say it of a guess.
+bool is_piece(const Candidate& candidate, const Prior& prior, float min_score) {
+  if (candidate.known < 0) return false;
+  return candidate.score < min_score || prior.people[static_cast<std::size_t>(candidate.known)].odds <= 1.F;
+}
+
+/// Gives a person the pixels of a candidate that vote for the middle of this group and are nobody's.
+void add_piece(const Candidate& piece, const VoteGroups& groups, const Mask& taken, Person& person) {
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (piece.grown[i] == 0 || taken[i] != 0 || groups.index[i] != piece.group) continue;
+    person.mask[i] = 1;
+    person.labels[i] = piece.labels.empty() ? kBackground : piece.labels[i];
+  }
+  person.box = bounding_box(person.mask);
+}
+
 /// Returns those candidates that are people, and marks them as accepted. `candidates` are sorted by certainty. A
 /// candidate that mostly repeats a more certain one is dropped; pixels that two share belong to the more certain one.
 std::vector<Person> choose_people(const Method& method, const Frame& frame, const Prior& prior,
-                                  std::vector<Candidate>& candidates) {
+                                  const VoteGroups& groups, std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
   std::vector<Person> people;
+  std::vector<int> person_of(groups.items.size(), -1);  // the first one of each group
   Mask taken(frame.camera.width, frame.camera.height, 0);
   for (Candidate& candidate : candidates) {
+    if (candidate.group >= 0 && person_of[candidate.group] >= 0 && is_piece(candidate, prior, options.min_score)) {
+      Person& person = people[static_cast<std::size_t>(person_of[candidate.group])];
+      add_piece(candidate, groups, taken, person);
+      for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= person.mask[i];
+      continue;
+    }
     const bool few = !has_enough_parts(candidate, options) && !is_followed(candidate, prior);
     if (candidate.certainty < options.min_score || few) continue;
     if (repeats(candidate.grown, taken, options.max_overlap)) continue;
     candidate.accepted = true;
+    if (candidate.group >= 0 && person_of[candidate.group] < 0) person_of[candidate.group] = int(people.size());
     people.push_back(make_person(method.body, candidate, taken));
     for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= people.back().mask[i];
   }
@@ -361,7 +386,7 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
   clock.lap(Stage::second_pass);
   std::ranges::stable_sort(candidates,
                            [](const Candidate& a, const Candidate& b) { return a.certainty > b.certainty; });
-  Detection found{choose_people(method, frame, prior, candidates), scene.labels.planes};
+  Detection found{choose_people(method, frame, prior, scene.groups, candidates), scene.labels.planes};
   clock.lap(Stage::people);
   if (trace != nullptr) fill(*trace, method, frame, scene, std::move(candidates), person);
   method.memory.give_back(std::move(scene.labels));

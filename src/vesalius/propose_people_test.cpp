@@ -269,5 +269,42 @@ TEST(ProposePeople, AKnownPersonWhomJudgesRefuseIsJudgedByVotesToo) {
   }
 }
 
+/// Somebody whose flesh is known between two parts alone.
+Prior::KnownPerson known_between(const LabelledFrame& truth, std::size_t who, const char* from, const char* to,
+                                 float odds) {
+  const auto at = [&](const char* part) { return truth.parts[who][std::size_t(paper_body().find_part(part))]; };
+  return {{}, {}, odds, {{at(from), at(to), 0.1F, 0.1F}}};
+}
+
+TEST(ProposePeople, APieceThatOnlyThePriorTellsIsNoSecondPerson) {
+  const LabelledFrame truth = render(people_at({{0.F, 0.9F, 2.5F}}), kCamera, paper_body());
+  Model model(std::make_shared<test::VotingLabeller>(truth, 0.05F));
+  model.judge = judge_by("core", 0.5F);  // takes the whole person, and no leg
+  for (const float odds : {1.F, 1e6F}) {
+    const Prior prior{{known_between(truth, 0, "l_leg", "l_foot", odds)}};
+    const std::vector<Person> people = Detector(model).detect(truth.frame, prior);
+    ASSERT_EQ(people.size(), 1U) << odds;
+    EXPECT_GT(overlap(people[0].mask, truth, 0), 0.95);
+    EXPECT_GT(people[0].skeleton.found, 15);
+    long labelled = 0, pixels = 0;
+    for (std::size_t i = 0; i < truth.labels.size(); ++i) {
+      const bool leg = truth.labels[i] == paper_body().find_part("l_leg");
+      pixels += leg ? 1 : 0;
+      labelled += leg && people[0].labels[i] == truth.labels[i] ? 1 : 0;
+    }
+    EXPECT_GT(labelled, pixels / 2) << "the pixels keep their parts";
+  }
+}
+
+TEST(ProposePeople, TwoKnownPeopleWhoAreClearStayTwoThoughTheirVotesAgree) {
+  LabelledFrame truth = render(people_at({{-0.25F, 0.9F, 2.5F}, {0.25F, 0.9F, 2.5F}}), kCamera, paper_body());
+  const LabelledFrame both = truth;
+  for (std::uint8_t& person : truth.person) person = person == 1 ? 0 : person;
+  Model model(std::make_shared<test::VotingLabeller>(truth, 0.05F));
+  model.judge = judge_by("groups", 0.5F);  // takes everybody
+  const Prior prior{{known_between(both, 0, "neck", "l_leg", 20.F), known_between(both, 1, "neck", "l_leg", 20.F)}};
+  EXPECT_EQ(Detector(model).detect(truth.frame, prior).size(), 2U);
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -31,6 +31,8 @@ constexpr double kExpect_s = 1.0;          // after being seen; later nobody kno
 constexpr float kRests = 0.6F;             // share of the pixels that are as they were where somebody still is
 constexpr float kSlow_m_s = 0.2F;          // at most, of somebody who rests
 constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who lay there
+constexpr double kNearlyAll = 0.8;         // of the pixels of somebody who is a piece of somebody else
+constexpr double kSplit_s = 2.0;           // for which somebody new may be a piece of whoever is followed for longer
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
@@ -111,14 +113,6 @@ TrackedPerson describe(const Track& track) {
   return out;
 }
 
-/// Gives somebody who was not found, but rests, the pixels that are as they were.
-void show_resting(const Track& track, const Frame& frame, TrackedPerson& out) {
-  out.velocity.setZero();
-  out.person.mask = track.place.expected(frame, track.place_position, track.place_position);
-  out.person.box = bounding_box(out.person.mask);
-  out.person.labels = LabelImage(out.person.mask.width(), out.person.mask.height(), kBackground);
-}
-
 TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const BodyFitter* fitter, double time_s) {
   TrackedPerson out = describe(track);
   if (track.rests) out.position = track.place_position;
@@ -178,18 +172,33 @@ bool reaches_out(const std::vector<Person>& people, const Box& region, const Cam
   });
 }
 
-/// Returns whether somebody's mask is a piece of somebody who is found: half of it or more lies in a mask twice as
-/// large.
-bool is_piece(const Person& person, const std::vector<Sighting>& sightings) {
-  const Mask mask = crop(person.mask, person.box);
+/// Returns the index of the sighting of which somebody's mask is a piece, or -1: nearly all of it, or half of it where
+/// the other mask is twice as large, is the other's as well.
+int whole_of(const Mask& full, const std::vector<Sighting>& sightings) {
+  const Box box = bounding_box(full);
+  const Mask mask = crop(full, box);
   const auto pixels = std::ranges::count_if(mask, [](std::uint8_t pixel) { return pixel != 0; });
-  return std::ranges::any_of(sightings, [&](const Sighting& sighting) {
-    if (sighting.place.pixels() < 2 * pixels || !sighting.person.mask.same_size(person.mask)) return false;
-    const Mask other = crop(sighting.person.mask, person.box);
+  const auto found = std::ranges::find_if(sightings, [&](const Sighting& sighting) {
+    if (!sighting.person.mask.same_size(full)) return false;
+    const Mask other = crop(sighting.person.mask, box);
     long shared = 0;
     for (std::size_t i = 0; i < mask.size(); ++i) shared += mask[i] != 0 && other[i] != 0 ? 1 : 0;
-    return 2 * shared >= pixels;
+    const bool larger = sighting.place.pixels() >= 2 * pixels;
+    return shared >= std::lround((larger ? 0.5 : kNearlyAll) * double(pixels));
   });
+  return pixels == 0 || found == sightings.end() ? -1 : int(found - sightings.begin());
+}
+
+/// Gives somebody who was not found, but rests, the pixels that are as they were, unless they are a piece of somebody
+/// who is found. Returns whether it did.
+bool show_resting(const Track& track, const Frame& frame, const std::vector<Sighting>& sightings, TrackedPerson& out) {
+  Mask mask = track.place.expected(frame, track.place_position, track.place_position);
+  out.velocity.setZero();
+  if (whole_of(mask, sightings) >= 0) return false;
+  out.person.box = bounding_box(mask);
+  out.person.labels = LabelImage(mask.width(), mask.height(), kBackground);
+  out.person.mask = std::move(mask);
+  return true;
 }
 
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
@@ -215,8 +224,10 @@ struct PeopleTracker::State {
   void count(Track& track, float score, double passed_s) const;
   void confirm(Track& track, float score) const;
   bool begun_at(const Track& stayed, const std::vector<Sighting>& sightings, const std::vector<int>& matched) const;
+  std::vector<bool> rejoin(const Frame& frame, const std::vector<Sighting>& sightings, double time_s,
+                           std::vector<int>& matched) const;
   double longest_unseen_s(const Track& track) const;
-  void lose(Track track, double time_s, TrackedFrame& out);
+  void lose(Track track, double time_s, TrackedFrame& out, bool remember = true);
   void lose_all(double time_s, TrackedFrame& out);
   void predict(const Frame& frame, double passed_s);
   std::vector<int> follow(const Frame& frame, const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
@@ -351,6 +362,26 @@ bool PeopleTracker::State::begun_at(const Track& stayed, const std::vector<Sight
   return false;
 }
 
+/// Joins people who are not found with those of whom they are a piece, if one of the two is new: whoever falls fast is
+/// taken for two at first. The older one has the sighting. Returns who is gone.
+std::vector<bool> PeopleTracker::State::rejoin(const Frame& frame, const std::vector<Sighting>& sightings,
+                                               double time_s, std::vector<int>& matched) const {
+  std::vector<bool> gone(tracks.size(), false);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const Track& track = tracks[t];
+    if (matched[t] >= 0 || track.place.unchanged(frame) < kRests) continue;
+    const int whole = whole_of(track.place.expected(frame, track.place_position, track.place_position), sightings);
+    const auto other = std::ranges::find(matched, whole);
+    if (whole < 0 || other == matched.end()) continue;
+    const auto o = static_cast<std::size_t>(other - matched.begin());
+    const bool older = is_sure(track) && track.since_s < tracks[o].since_s;
+    if (time_s - tracks[older ? o : t].since_s > kSplit_s) continue;
+    gone[older ? o : t] = true;
+    if (older) std::swap(matched[t], matched[o]);
+  }
+  return gone;
+}
+
 /// Returns the time after which somebody who is not found is given up.
 double PeopleTracker::State::longest_unseen_s(const Track& track) const {
   if (!is_sure(track)) return double(options.confirm_s);
@@ -358,10 +389,11 @@ double PeopleTracker::State::longest_unseen_s(const Track& track) const {
 }
 
 /// Gives a track up. Nobody is told of a guess.
-void PeopleTracker::State::lose(Track track, double time_s, TrackedFrame& out) {
+void PeopleTracker::State::lose(Track track, double time_s, TrackedFrame& out, bool remember) {
   if (!is_sure(track)) return;
   track.state = TrackState::lost;
   out.people.push_back(describe_unseen(track, body, fitter.get(), time_s));
+  if (!remember) return;
   track.place = {};
   track.expected = {};
   lost.push_back(std::move(track));
@@ -385,7 +417,8 @@ void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
 /// Returns for each track the index of its sighting, or -1.
 std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vector<Sighting>& sightings, double time_s,
                                               TrackedFrame& out) {
-  const std::vector<int> matched = match(sightings, time_s);
+  std::vector<int> matched = match(sightings, time_s);
+  const std::vector<bool> gone = rejoin(frame, sightings, time_s, matched);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     tracks[t].rests = matched[t] < 0 && rests(tracks[t], frame) && !begun_at(tracks[t], sightings, matched);
   }
@@ -397,8 +430,8 @@ std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vec
     if (matched[t] >= 0) {
       take_sighting(track, sightings[static_cast<std::size_t>(matched[t])], time_s);
       taken[static_cast<std::size_t>(matched[t])] = true;
-    } else if (time_s - track.seen_s > longest_unseen_s(track)) {
-      lose(std::move(track), time_s, out);
+    } else if (gone[t] || time_s - track.seen_s > longest_unseen_s(track)) {
+      lose(std::move(track), time_s, out, !gone[t]);
       continue;
     } else if (is_sure(track)) {
       track.state = TrackState::hidden;
@@ -467,11 +500,8 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
     Track& track = tracks[t];
     if (sighting_of[t] >= 0 || !is_sure(track)) continue;
     TrackedPerson& told = out.people.emplace_back(describe_unseen(track, body, fitter.get(), out.time_s));
-    if (track.rests) {
-      track.stance.hold(out.time_s);
-      show_resting(track, frame, told);
-    }
-    const bool shown = track.rests && !is_piece(told.person, sightings);
+    if (track.rests) track.stance.hold(out.time_s);
+    const bool shown = track.rests && show_resting(track, frame, sightings, told);
     told.posture = take_stance(frame, track, shown ? &told.person : nullptr, out);
     told.stance = track.stance.stance();
     smooth(track, told, out.time_s);

@@ -216,6 +216,50 @@ TEST(TrackPeople, WhoRestsHasAPlaceThoughNotFound) {
   EXPECT_EQ(gone.person.box.width, 0);
 }
 
+/// Returns the part of somebody above or below a row.
+Person piece_of(Person person, int row, bool above) {
+  for (int v = 0; v < person.mask.height(); ++v) {
+    for (int u = 0; u < person.mask.width(); ++u) {
+      if ((v < row) != above) person.mask(u, v) = 0;
+    }
+  }
+  return person;
+}
+
+TEST(TrackPeople, WhoIsTakenForTwoIsOneAgainUnderTheOldId) {
+  for (const int two : {4, 90}) {  // frames
+    const Stage stage({Actor{}});
+    const Person& whole = stage.people[0];
+    // The legs are a third of the board.
+    const Person trunk = piece_of(whole, 75, true), legs = piece_of(whole, 75, false);
+    PeopleTracker tracker(paper_body(), {}, hue());
+    int frames = 0;
+    const auto show = [&](const std::vector<Person>& people) {
+      Frame frame = stage.frame;
+      frame.time_s = frames++ * kFrame_s;
+      return tracker.update(frame, {people});
+    };
+    for (const int before : {30, 90}) {
+      for (int i = 0; i < before; ++i) show({whole});
+      for (int i = 0; i < two; ++i) show({legs, trunk});
+    }
+    std::set<int> followed;
+    for (int i = 0; i < 3; ++i) {
+      followed.clear();
+      for (const TrackedPerson& person : show({whole}).people) {
+        if (person.state == TrackState::lost) continue;
+        followed.insert(person.id);
+        EXPECT_EQ(person.state == TrackState::hidden, person.person.mask.empty()) << "hidden, with another's pixels";
+      }
+    }
+    if (two == 4) {
+      EXPECT_THAT(followed, testing::ElementsAre(1));
+    } else {
+      EXPECT_THAT(followed, testing::SizeIs(2)) << "two for long are two, of whom one is hidden";
+    }
+  }
+}
+
 TEST(TrackPeople, WhoComesBackAndLooksTheSameHasTheOldId) {
   Follower follower;
   Actor red, blue;
