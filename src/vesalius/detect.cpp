@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -299,11 +300,11 @@ bool is_piece(const Candidate& candidate, const Prior& prior, float min_score) {
   return candidate.score < min_score || prior.people[static_cast<std::size_t>(candidate.known)].odds <= 1.F;
 }
 
-/// Gives a person the pixels of a candidate that vote for the middle of this group and are nobody's.
-void add_piece(const Candidate& piece, const VoteGroups& groups, const Mask& taken, Person& person) {
+/// Gives a person the pixels of a candidate that vote for the middle of this group and are not taken, and takes them.
+void add_piece(const Candidate& piece, const VoteGroups& groups, Mask& taken, Person& person) {
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (piece.grown[i] == 0 || taken[i] != 0 || groups.index[i] != piece.group) continue;
-    person.mask[i] = 1;
+    person.mask[i] = taken[i] = 1;
     person.labels[i] = piece.labels.empty() ? kBackground : piece.labels[i];
   }
   person.box = bounding_box(person.mask);
@@ -315,20 +316,19 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, cons
                                   const VoteGroups& groups, std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
   std::vector<Person> people;
-  std::vector<int> person_of(groups.items.size(), -1);  // the first one of each group
+  std::map<int, std::size_t> first_of;  // index of the first person of each group
   Mask taken(frame.camera.width, frame.camera.height, 0);
   for (Candidate& candidate : candidates) {
-    if (candidate.group >= 0 && person_of[candidate.group] >= 0 && is_piece(candidate, prior, options.min_score)) {
-      Person& person = people[static_cast<std::size_t>(person_of[candidate.group])];
-      add_piece(candidate, groups, taken, person);
-      for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= person.mask[i];
+    const auto first = first_of.find(candidate.group);
+    if (first != first_of.end() && is_piece(candidate, prior, options.min_score)) {
+      add_piece(candidate, groups, taken, people[first->second]);
       continue;
     }
     const bool few = !has_enough_parts(candidate, options) && !is_followed(candidate, prior);
     if (candidate.certainty < options.min_score || few) continue;
     if (repeats(candidate.grown, taken, options.max_overlap)) continue;
     candidate.accepted = true;
-    if (candidate.group >= 0 && person_of[candidate.group] < 0) person_of[candidate.group] = int(people.size());
+    if (candidate.group >= 0) first_of.emplace(candidate.group, people.size());
     people.push_back(make_person(method.body, candidate, taken));
     for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= people.back().mask[i];
   }
