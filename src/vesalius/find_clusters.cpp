@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "vesalius/base/rays.h"
 #include "vesalius/frame.h"
 
 namespace vesalius {
@@ -36,23 +37,36 @@ class ClusterFinder {
  public:
   ClusterFinder(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
                 const ClusterOptions& options, const Box& within)
-      : labels_(labels), depth_(depth), camera_(camera), body_(body), options_(options), within_(within) {}
+      : labels_(labels),
+        depth_(depth),
+        camera_(camera),
+        body_(body),
+        options_(options),
+        within_(within),
+        rays_(camera),
+        open_(within.width + 2, within.height + 2, kBackground) {
+    for (int v = 0; v < within.height; ++v) {
+      const std::uint8_t* from = labels.row(within.v + v) + within.u;
+      const std::uint16_t* reading = depth.row(within.v + v) + within.u;
+      std::transform(from, from + within.width, reading, open_.row(v + 1) + 1,
+                     [](std::uint8_t label, std::uint16_t mm) { return mm != 0 ? label : kBackground; });
+    }
+  }
 
   Clusters run() {
     Clusters out;
     out.index = Image<std::int32_t>(labels_.width(), labels_.height(), kNone);
     std::vector<PartCluster> kept;
-    for (int v = within_.v; v < within_.v + within_.height; ++v) {
-      const std::uint8_t* labels = labels_.row(v);
-      for (int u = within_.u; u < within_.u + within_.width; ++u) {
+    for (int v = 0; v < within_.height; ++v) {
+      const std::uint8_t* labels = open_.row(v + 1) + 1;
+      for (int u = 0; u < within_.width; ++u) {
         if (labels[u] >= parts_) continue;  // most pixels
-        if (out.index(u, v) != kNone || depth_(u, v) == 0) continue;
-        const PartCluster cluster = fill(u, v, static_cast<std::int32_t>(kept.size()), out.index);
-        if (feasible(cluster)) {
-          kept.push_back(cluster);
-        } else {
-          for (const int pixel : queue_) out.index[pixel] = kDropped;
+        const PartCluster cluster = fill(u, v);
+        if (!feasible(cluster)) continue;
+        for (const auto& [pu, pv] : queue_) {
+          out.index(within_.u + pu, within_.v + pv) = static_cast<std::int32_t>(kept.size());
         }
+        kept.push_back(cluster);
       }
     }
     renumber(kept, out);
@@ -61,41 +75,39 @@ class ClusterFinder {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  static constexpr std::int32_t kDropped = -2;
 
-  Eigen::Vector3f point(int u, int v) const { return point_at(camera_, depth_, u, v); }
+  /// A pixel of the box.
+  struct Pixel {
+    int u, v;
+  };
+
+  Eigen::Vector3f point(int u, int v) const { return rays_.point(depth_, within_.u + u, within_.v + v); }
 
   bool connected(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const {
     const float gap = options_.max_gap_m + options_.max_gap_per_z2 * a.z() * b.z();
     return (a - b).squaredNorm() <= gap * gap;
   }
 
-  /// Runs a breadth-first search from (u, v). Leaves the cluster's pixels in queue_.
-  PartCluster fill(int u, int v, std::int32_t id, Image<std::int32_t>& index) {
+  /// Runs a breadth-first search from (u, v) of the box. Leaves the cluster's pixels in queue_, and closes them.
+  PartCluster fill(int u, int v) {
     PartCluster cluster;
-    cluster.label = labels_(u, v);
-    cluster.first_pixel = v * labels_.width() + u;
-    const int left = within_.u, right = left + within_.width - 1;
-    const int top = within_.v, bottom = top + within_.height - 1;
+    cluster.label = open_(u + 1, v + 1);
+    cluster.first_pixel = (within_.v + v) * labels_.width() + within_.u + u;
     Moments moments;
     double area = 0.0;
-    queue_.assign(1, cluster.first_pixel);
-    index(u, v) = id;
+    queue_.assign(1, {u, v});
+    open_(u + 1, v + 1) = kBackground;
     for (std::size_t head = 0; head < queue_.size(); ++head) {
-      const int pu = queue_[head] % labels_.width();
-      const int pv = queue_[head] / labels_.width();
+      const auto [pu, pv] = queue_[head];
       const Eigen::Vector3f here = point(pu, pv);
       moments.add(here);
       area += double(here.z()) * double(here.z());
-      for (int nv = std::max(top, pv - 1); nv <= std::min(bottom, pv + 1); ++nv) {
-        std::int32_t* ids = index.row(nv);
-        const std::uint8_t* labels = labels_.row(nv);
-        const std::uint16_t* depth = depth_.row(nv);
-        for (int nu = std::max(left, pu - 1); nu <= std::min(right, pu + 1); ++nu) {
-          if (ids[nu] != kNone || labels[nu] != cluster.label || depth[nu] == 0) continue;
-          if (!connected(here, point(nu, nv))) continue;
-          ids[nu] = id;
-          queue_.push_back(nv * labels_.width() + nu);
+      for (int nv = pv - 1; nv <= pv + 1; ++nv) {
+        std::uint8_t* open = open_.row(nv + 1) + 1;
+        for (int nu = pu - 1; nu <= pu + 1; ++nu) {
+          if (open[nu] != cluster.label || !connected(here, point(nu, nv))) continue;
+          open[nu] = kBackground;
+          queue_.push_back({nu, nv});
         }
       }
     }
@@ -137,8 +149,8 @@ class ClusterFinder {
       out.items.push_back(kept[order[i]]);
     }
     for (int v = within_.v; v < within_.v + within_.height; ++v) {
-      std::int32_t* row = out.index.row(v);
-      for (int u = within_.u; u < within_.u + within_.width; ++u) row[u] = row[u] >= 0 ? rank[row[u]] : -1;
+      std::int32_t* row = out.index.row(v) + within_.u;
+      std::transform(row, row + within_.width, row, [&](std::int32_t i) { return i >= 0 ? rank[i] : kNone; });
     }
   }
 
@@ -149,7 +161,9 @@ class ClusterFinder {
   const int parts_ = body_.part_count();
   const ClusterOptions& options_;
   const Box& within_;
-  std::vector<int> queue_;  ///< row-major pixels of the cluster being filled
+  Rays rays_;
+  LabelImage open_;  ///< labels in the box of pixels with a reading that no cluster has; a pixel more on all sides
+  std::vector<Pixel> queue_;  ///< of the cluster being filled
 };
 
 }  // namespace

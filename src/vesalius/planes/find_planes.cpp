@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "vesalius/base/random.h"
+#include "vesalius/base/rays.h"
 #include "vesalius/frame.h"
 #include "vesalius/parallel.h"
 #include "vesalius/planes/flat_pieces.h"
@@ -42,10 +44,10 @@ struct Sample {
 
 class Surface {
  public:
-  Surface(const DepthImage& depth, const Camera& camera) : depth_(depth), camera_(camera) {}
+  Surface(const DepthImage& depth, const Camera& camera) : depth_(depth), camera_(camera), rays_(camera) {}
 
   bool known(int u, int v) const { return depth_.contains(u, v) && depth_(u, v) != 0; }
-  Eigen::Vector3f point(int u, int v) const { return point_at(camera_, depth_, u, v); }
+  Eigen::Vector3f point(int u, int v) const { return rays_.point(depth_, u, v); }
 
   /// Normal from neighbours so far apart that the sensor's depth step tilts it by a quarter at most; zero where the
   /// surface ends or bends within that.
@@ -68,6 +70,7 @@ class Surface {
   static constexpr float kMostBendPerZ2 = 0.005F;
   const DepthImage& depth_;
   const Camera& camera_;
+  Rays rays_;
 };
 
 std::vector<Sample> take_samples(const DepthImage& depth, const Camera& camera) {
@@ -217,13 +220,17 @@ Mask pixels_on(const std::vector<Plane>& planes, const std::vector<Sample>& samp
   const Image<std::uint64_t> cells = cells_near(samples, planes, depth, options);
   const Surface surface(depth, camera);
   parallel_ranges(depth.height(), 16, [&](int begin, int end) {
+    const int width = depth.width();
     for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        const std::uint64_t bits = cells(u / kStep, v / kStep);
+      const std::uint64_t* near = cells.row(v / kStep);
+      for (int u = 0; u < width; ++u) {
+        std::uint64_t bits = near[u / kStep];
         if (bits == 0 || depth(u, v) == 0) continue;
         const Eigen::Vector3f p = surface.point(u, v);
-        for (std::size_t i = 0; i < planes.size(); ++i) {
-          if ((bits >> i & 1U) == 0 || planes[i].distance(p) > thickness(options, p.z())) continue;
+        const float thick = thickness(options, p.z());
+        for (; bits != 0; bits &= bits - 1) {
+          const int i = std::countr_zero(bits);
+          if (planes[i].distance(p) > thick) continue;
           out(u, v) = 1;
           plane_of(u, v) = static_cast<std::uint8_t>(i);
         }
