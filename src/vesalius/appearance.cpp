@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
+#include "vesalius/row_kernels.h"
 
 namespace vesalius {
 namespace {
@@ -74,30 +74,16 @@ Image<int> mean_steps(const Frame& frame) {
 
 }  // namespace
 
-int HueAppearance::class_of(Rgb c) {
-  constexpr float kMinSaturation = 0.2F;  // below it a hue means nothing
-  const int high = lightness(c);
-  const int low = std::min({c.r, c.g, c.b});
-  const int span = high - low;
-  if (high < 24 || float(span) < kMinSaturation * float(high)) {
-    return kHues + std::min(kGreys - 1, high * kGreys / 256);
-  }
-  float sixth = 0.F;  // position on the colour circle, in sixths
-  if (high == c.r) {
-    sixth = float(c.g - c.b) / float(span);
-  } else if (high == c.g) {
-    sixth = 2.F + float(c.b - c.r) / float(span);
-  } else {
-    sixth = 4.F + float(c.r - c.g) / float(span);
-  }
-  const int hue = int(std::floor(sixth * float(kHues) / 6.F + 0.5F));
-  return (hue + kHues) % kHues;
+int HueAppearance::class_of(Rgb colour) {
+  std::uint16_t look = 0;
+  classify_hues(&colour, 1, kHues, &look);
+  return look;
 }
 
 std::vector<std::uint16_t> HueAppearance::describe(const Frame& frame) const {
   std::vector<std::uint16_t> looks(frame.colour.size());
   parallel_ranges(int(looks.size()), kPixels, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) looks[i] = static_cast<std::uint16_t>(class_of(frame.colour[i]));
+    classify_hues(frame.colour.data() + begin, end - begin, kHues, looks.data() + begin);
   });
   return looks;
 }

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "vesalius/base/capsule.h"
+#include "vesalius/base/rays.h"
+#include "vesalius/row_kernels.h"
 
 namespace vesalius {
 namespace {
@@ -46,35 +48,18 @@ PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel
                            const Looks& looks)
     : frame_(frame), flat_(flat), body_(body), options_(options), looks_(looks) {}
 
-Box PersonGrower::box_around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
-  Box all;
-  for (std::size_t i = 0; i < rough.parts.size(); ++i) {
-    if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
-    const Eigen::Vector3f& centre = rough.parts[i].centre;
-    all = around(all, box_around({centre, centre, reach[i], reach[i]}, frame_.camera));
-  }
-  return all;
+PersonGrower::Reach PersonGrower::reach_of(const Skeleton& rough) const {
+  return around_parts(rough, reach_of_parts(rough, body_, options_));
 }
 
-Box PersonGrower::reach_of(const Skeleton& rough) const {
-  return box_around_parts(rough, reach_of_parts(rough, body_, options_));
-}
-
-Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
-  Mask out(frame_.depth.width(), frame_.depth.height(), 0);
+PersonGrower::Reach PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
+  Reach out{Mask(frame_.depth.width(), frame_.depth.height(), 0), {}};
   for (std::size_t i = 0; i < rough.parts.size(); ++i) {
     if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
     const Eigen::Vector3f& centre = rough.parts[i].centre;
     const Box box = box_around({centre, centre, reach[i], reach[i]}, frame_.camera);
-    for (int v = box.v; v < box.v + box.height; ++v) {
-      for (int u = box.u; u < box.u + box.width; ++u) {
-        if (frame_.depth(u, v) == 0 || out(u, v) != 0) continue;
-        const float dz = float(frame_.depth(u, v)) * 1e-3F - centre.z();
-        if (dz * dz > reach[i] * reach[i]) continue;  // most of them, before x and y cost their divisions
-        const Eigen::Vector3f p = point_at(frame_.camera, frame_.depth, u, v);
-        if ((p - centre).squaredNorm() <= reach[i] * reach[i]) out(u, v) = 1;
-      }
-    }
+    mark_near(frame_.depth, frame_.camera, centre, reach[i], box, out.pixels);
+    out.box = around(out.box, box);
   }
   return out;
 }
@@ -102,7 +87,7 @@ void PersonGrower::refuse_looks(const Skeleton& rough, const Mask& seeds, const 
   for (std::size_t look = 0; look < here.size(); ++look) {
     refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > kVeto ? 1 : 0;
   }
-  const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_));
+  const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_)).pixels;
   each([&](std::size_t i) {
     if (allowed[i] != 0 && seeds[i] == 0 && any_look[i] == 0 && refuses[looks_.classes[i]] != 0) allowed[i] = 0;
   });
@@ -110,16 +95,24 @@ void PersonGrower::refuse_looks(const Skeleton& rough, const Mask& seeds, const 
 
 std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
                                      const std::vector<AppearanceHistogram>& known) const {
-  return grow(people, clusters, known, {0, 0, frame_.depth.width(), frame_.depth.height()});
+  std::vector<Reach> reaches;
+  for (const Skeleton& person : people) reaches.push_back(reach_of(person));
+  return grow(people, std::move(reaches), clusters, known, {0, 0, frame_.depth.width(), frame_.depth.height()});
 }
 
-std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
-                                     const std::vector<AppearanceHistogram>& known, const Box& within) const {
+Mask PersonGrower::grow(const Skeleton& person, Reach reach, const Clusters& clusters, const Box& within) const {
+  std::vector<Reach> reaches;
+  reaches.push_back(std::move(reach));
+  return std::move(grow({person}, std::move(reaches), clusters, {}, within)[0]);
+}
+
+std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, std::vector<Reach> reaches,
+                                     const Clusters& clusters, const std::vector<AppearanceHistogram>& known,
+                                     const Box& within) const {
   const int width = frame_.depth.width();
   const int height = frame_.depth.height();
   Mask nobody(width, height, 0);
   std::vector<Mask> grown(people.size(), nobody);
-  std::vector<Mask> allowed;  // within reach, not refused by their look
   std::vector<int> owner_of(clusters.items.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (const SkeletonPart& part : people[i].parts) {
@@ -127,7 +120,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
     }
   }
   struct Front {
-    int pixel;
+    int u, v;
     int person;
   };
   std::vector<Front> queue;
@@ -139,28 +132,25 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
       if (owner < 0 || taken(u, v) != 0) continue;
       taken(u, v) = 1;
       grown[owner](u, v) = 1;
-      queue.push_back({v * width + u, owner});
+      queue.push_back({u, v, owner});
     }
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
-    allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));
-    refuse_looks(people[i], grown[i], around(within, reach_of(people[i])),
-                 known.empty() ? AppearanceHistogram{} : known[i], allowed.back());
+    refuse_looks(people[i], grown[i], around(within, reaches[i].box), known.empty() ? AppearanceHistogram{} : known[i],
+                 reaches[i].pixels);
   }
-  const auto point = [&](int u, int v) { return point_at(frame_.camera, frame_.depth, u, v); };
+  const Rays rays(frame_.camera);
   for (std::size_t head = 0; head < queue.size(); ++head) {
-    const auto [pixel, person] = queue[head];
-    const int u = pixel % width;
-    const int v = pixel / width;
-    const Eigen::Vector3f here = point(u, v);
+    const auto [u, v, person] = queue[head];
+    const Eigen::Vector3f here = rays.point(frame_.depth, u, v);
     const float radius = options_.radius_m + options_.radius_per_z2 * here.z() * here.z();
     for (int nv = std::max(0, v - 1); nv <= std::min(height - 1, v + 1); ++nv) {
       for (int nu = std::max(0, u - 1); nu <= std::min(width - 1, u + 1); ++nu) {
-        if (taken(nu, nv) != 0 || allowed[person](nu, nv) == 0) continue;
-        if ((point(nu, nv) - here).squaredNorm() > radius * radius) continue;
+        if (taken(nu, nv) != 0 || reaches[person].pixels(nu, nv) == 0) continue;
+        if ((rays.point(frame_.depth, nu, nv) - here).squaredNorm() > radius * radius) continue;
         taken(nu, nv) = 1;
         grown[person](nu, nv) = 1;
-        queue.push_back({nv * width + nu, person});
+        queue.push_back({nu, nv, person});
       }
     }
   }

@@ -27,17 +27,20 @@ class PersonGrower {
   /// person's appearance learned before, to which the looks of this frame are added.
   std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters,
                          const std::vector<AppearanceHistogram>& known = {}) const;
-  /// Does the same faster where all clusters lie within a box.
-  std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters,
-                         const std::vector<AppearanceHistogram>& known, const Box& within) const;
-  /// Returns the box around all pixels to which a skeleton may grow.
-  Box reach_of(const Skeleton& rough) const;
+  /// Pixels to which somebody may grow.
+  struct Reach {
+    Mask pixels;
+    Box box;  ///< around them
+  };
+  Reach reach_of(const Skeleton& rough) const;
+  /// Does the same for one person whose reach is known, faster where all clusters lie within a box.
+  Mask grow(const Skeleton& person, Reach reach, const Clusters& clusters, const Box& within) const;
 
  private:
-  /// Returns the box around the pixels within `radius_m[part]` of each observed part's centre.
-  Box box_around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
-  /// Returns 1 on these pixels; a radius of 0 reaches nothing.
-  Mask around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
+  std::vector<Mask> grow(const std::vector<Skeleton>& people, std::vector<Reach> reaches, const Clusters& clusters,
+                         const std::vector<AppearanceHistogram>& known, const Box& within) const;
+  /// Returns the pixels within `radius_m[part]` of each observed part's centre; a radius of 0 reaches nothing.
+  Reach around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
   /// Takes from `allowed`, the pixels within reach, those that look as the person hardly ever does. All seeds and
   /// allowed pixels are in `box`.
   void refuse_looks(const Skeleton& rough, const Mask& seeds, const Box& box, AppearanceHistogram person,

@@ -228,8 +228,8 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
             grower.grow(scene.rough, scene.clusters));
   Mask clustered(kCamera.width, kCamera.height, 0);
   std::ranges::transform(scene.clusters.index, clustered.begin(), [](int one) { return std::uint8_t{one >= 0}; });
-  EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {}, bounding_box(clustered)),
-            grower.grow(scene.rough, scene.clusters));
+  EXPECT_EQ(grower.grow(scene.rough[0], grower.reach_of(scene.rough[0]), scene.clusters, bounding_box(clustered)),
+            grower.grow({scene.rough[0]}, scene.clusters)[0]);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
+#include <functional>
 #include <utility>
 
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/grow_person.h"
 #include "vesalius/parallel.h"
+#include "vesalius/row_kernels.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {
@@ -19,15 +20,24 @@ constexpr float kRivalLikelihood = 0.2F;  // per part: rough skeletons of at lea
 
 Box whole(const Mask& mask) { return {0, 0, mask.width(), mask.height()}; }
 
-/// Adds the pixels in a box where the background is sure enough that nobody grows there.
-void bar_background(const Posteriors& posteriors, int parts, double least, const Box& box, Mask& mask) {
+/// Adds the pixels in a box where the background is sure enough that nobody grows there. Only those `within` a mask
+/// matter, unless there is none.
+void bar_background(const Posteriors& posteriors, int parts, double least, const Box& box, const Mask* within,
+                    Mask& mask) {
   if (least == 0.0) return;
   parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {
+    std::vector<BodySums> sums(static_cast<std::size_t>(box.width));
+    std::vector<std::uint8_t> skip(sums.size());
     for (int v = box.v + begin; v < box.v + end; ++v) {
-      for (int u = box.u; u < box.u + box.width; ++u) {
-        if (mask(u, v) != 0) continue;
-        const std::optional<double> share = body_share(posteriors, u, v, parts);
-        if (share && *share < least) mask(u, v) = 1;
+      std::uint8_t* barred = mask.row(v) + box.u;
+      std::copy_n(barred, box.width, skip.begin());
+      if (within != nullptr) {
+        const auto or_none = [](std::uint8_t is, std::uint8_t other) { return std::uint8_t(is | (other == 0)); };
+        std::transform(skip.begin(), skip.end(), within->row(v) + box.u, skip.begin(), or_none);
+      }
+      sum_bodies(posteriors, box.u, v, parts, skip.data(), box.width, sums.data());
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (sums[i].all > 0 && double(sums[i].body) / sums[i].all < least) barred[i] = 1;
       }
     }
   });
@@ -77,7 +87,7 @@ class Proposer {
     std::erase_if(candidates, [](const Candidate& c) { return std::ranges::count(c.grown, 1) == 0; });
     if (rough.empty()) return candidates;
     Mask nobody = scene_.labels.flat;
-    bar_background(whole(nobody), nobody);
+    bar_background(whole(nobody), nullptr, nobody);
     bar_groups(scene_.groups, -1, whole(nobody), nobody);
     std::ranges::move(grow_rough(rough, PersonGrower(frame_, nobody, body_, options_.grow, looks_)),
                       std::back_inserter(candidates));
@@ -89,9 +99,9 @@ class Proposer {
     return std::min(count, static_cast<std::size_t>(options_.refine.max_candidates));
   }
 
-  void bar_background(const Box& box, Mask& mask) const {
+  void bar_background(const Box& box, const Mask* within, Mask& mask) const {
     vesalius::bar_background(scene_.labels.posteriors(), body_.part_count(), double(options_.grow.least_body), box,
-                             mask);
+                             within, mask);
   }
 
   /// Searches a skeleton in the labels of a group and grows it. The group's pixels are the person's anyway.
@@ -100,7 +110,7 @@ class Proposer {
     const Box& box = scene_.groups.items[group].box;
     Mask inside(index.width(), index.height(), 0), closed = scene_.labels.flat;
     LabelImage labels(index.width(), index.height(), kBackground);
-    bar_background(box, closed);
+    bar_background(box, nullptr, closed);
     for (int v = box.v; v < box.v + box.height; ++v) {
       for (int u = box.u; u < box.u + box.width; ++u) {
         if (index(u, v) != group) continue;
@@ -117,11 +127,12 @@ class Proposer {
     if (found.empty()) return candidate;
     candidate.rough = std::move(found.front());
     const PersonGrower grower(frame_, closed, body_, options_.grow, looks_);
-    const Box reach = grower.reach_of(candidate.rough);
-    bar_background(reach, closed);
-    bar_groups(scene_.groups, group, around(reach, box), closed);
-    const Mask grown = std::move(grower.grow({candidate.rough}, clusters, {}, box)[0]);
-    for (std::size_t i = 0; i < grown.size(); ++i) candidate.grown[i] |= grown[i];
+    PersonGrower::Reach reach = grower.reach_of(candidate.rough);
+    bar_background(reach.box, &reach.pixels, closed);
+    bar_groups(scene_.groups, group, around(reach.box, box), closed);
+    const Mask grown = grower.grow(candidate.rough, std::move(reach), clusters, box);
+    std::transform(candidate.grown.begin(), candidate.grown.end(), grown.begin(), candidate.grown.begin(),
+                   std::bit_or<std::uint8_t>());
     return candidate;
   }
 

@@ -12,6 +12,7 @@
 #include "vesalius/base/body_heading.h"
 #include "vesalius/derive_joints.h"
 #include "vesalius/forest/body_context.h"
+#include "vesalius/row_kernels.h"
 
 namespace vesalius {
 namespace {
@@ -24,22 +25,25 @@ constexpr int kRim = 5;
 /// The pixels of a mask.
 class Inside {
  public:
-  explicit Inside(const Mask& mask) : mask_(mask), box_(bounding_box(mask)) {}
+  explicit Inside(const Mask& mask) : mask_(mask) {
+    const Box box = bounding_box(mask);
+    for (int v = box.v; v < box.v + box.height; ++v) {
+      for (int u = box.u; u < box.u + box.width; ++u) {
+        if (mask(u, v) != 0) pixels_.push_back({u, v});
+      }
+    }
+  }
   const Mask& mask() const { return mask_; }
 
   /// Calls `use(u, v)` for each, row by row.
   template <class Use>
   void each(Use&& use) const {
-    for (int v = box_.v; v < box_.v + box_.height; ++v) {
-      for (int u = box_.u; u < box_.u + box_.width; ++u) {
-        if (mask_(u, v) != 0) use(u, v);
-      }
-    }
+    for (const auto& [u, v] : pixels_) use(u, v);
   }
 
  private:
   const Mask& mask_;
-  Box box_;
+  std::vector<std::array<int, 2>> pixels_;
 };
 
 bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point) {
@@ -293,12 +297,14 @@ float mean_body_outside(const Mask& candidates, const DepthImage& depth, const P
   constexpr int kEvery = 2;
   double sum = 0.0;
   long pixels = 0;
+  std::vector<std::uint8_t> skip(static_cast<std::size_t>(depth.width()), 1);
+  std::vector<BodySums> sums(skip.size());
   for (int v = 0; v < depth.height(); v += kEvery) {
-    for (int u = 0; u < depth.width(); u += kEvery) {
-      if (depth(u, v) == 0 || candidates(u, v) != 0) continue;
-      const std::optional<double> share = body_share(posteriors, u, v, parts);
-      if (!share) continue;
-      sum += *share;
+    for (int u = 0; u < depth.width(); u += kEvery) skip[u] = depth(u, v) == 0 || candidates(u, v) != 0 ? 1 : 0;
+    sum_bodies(posteriors, 0, v, parts, skip.data(), depth.width(), sums.data());
+    for (const BodySums& of : sums) {
+      if (of.all == 0) continue;
+      sum += double(of.body) / of.all;
       ++pixels;
     }
   }
