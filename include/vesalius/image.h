@@ -103,8 +103,10 @@ inline Box bounding_box(const Mask& mask, const Box& within) {
   const auto inside = [](std::uint8_t value) { return value != 0; };
   for (int v = within.v; v < within.v + within.height; ++v) {
     const std::uint8_t *row = mask.row(v), *begin = row + within.u, *end = begin + within.width;
+    std::uint8_t any = 0;
+    for (const std::uint8_t* at = begin; at != end; ++at) any |= *at;  // most rows, on vectors
+    if (any == 0) continue;
     const std::uint8_t* first = std::find_if(begin, end, inside);
-    if (first == end) continue;
     const std::uint8_t* last = end - 1;
     while (*last == 0) --last;
     left = std::min(left, int(first - row));

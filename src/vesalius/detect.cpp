@@ -198,12 +198,15 @@ float certainty_of(const Candidate& candidate, const Prior& prior) {
   return *odds * candidate.score / (1.F - candidate.score + *odds * candidate.score);
 }
 
+/// Adds the pixels of a mask to others.
+void take(const Mask& mask, Mask& taken) {
+  std::transform(taken.begin(), taken.end(), mask.begin(), taken.begin(), std::bit_or<std::uint8_t>());
+}
+
 Scenery look_around(const Method& method, const Frame& frame, const Scene& scene,
                     const std::vector<Candidate>& candidates) {
   Mask anybody(frame.camera.width, frame.camera.height, 0);
-  for (const Candidate& candidate : candidates) {
-    for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
-  }
+  for (const Candidate& candidate : candidates) take(candidate.grown, anybody);
   return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.smooth, method.body.part_count()),
           int(scene.rough.size()), int(scene.groups.items.size())};
 }
@@ -259,11 +262,12 @@ void add_known(const Method& method, const Frame& frame, const Scene& scene, con
 
 /// Returns whether most of the mask is already taken.
 bool repeats(const Mask& mask, const Mask& taken, float max_overlap) {
-  long pixels = 0;
-  long shared = 0;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    pixels += mask[i] != 0 ? 1 : 0;
-    shared += mask[i] != 0 && taken[i] != 0 ? 1 : 0;
+  std::uint32_t pixels = 0, shared = 0;
+  const std::uint8_t *of_mask = mask.data(), *of_taken = taken.data();
+  for (std::size_t i = 0; i < taken.size(); ++i) {  // without branches, for vectors
+    const std::uint32_t in_mask = of_mask[i] != 0 ? 1 : 0, in_taken = of_taken[i] != 0 ? 1 : 0;
+    pixels += in_mask;
+    shared += in_mask & in_taken;
   }
   return float(shared) > max_overlap * float(pixels);
 }
@@ -278,10 +282,10 @@ Person make_person(const BodyModel& body, const Candidate& candidate, const Mask
   person.mask = candidate.grown;
   person.labels = candidate.labels;
   person.points = candidate.points;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i] != 0) person.mask[i] = 0;
-    if (person.mask[i] == 0) person.labels[i] = kBackground;
-  }
+  const auto free = [](std::uint8_t in, std::uint8_t is_taken) { return is_taken != 0 ? std::uint8_t{0} : in; };
+  const auto inside = [](std::uint8_t label, std::uint8_t in) { return in != 0 ? label : kBackground; };
+  std::transform(person.mask.begin(), person.mask.end(), taken.begin(), person.mask.begin(), free);
+  std::transform(person.labels.begin(), person.labels.end(), person.mask.begin(), person.labels.begin(), inside);
   person.box = bounding_box(person.mask);
   return person;
 }
@@ -330,7 +334,7 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, cons
     candidate.accepted = true;
     if (candidate.group >= 0) first_of.emplace(candidate.group, people.size());
     people.push_back(make_person(method.body, candidate, taken));
-    for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= people.back().mask[i];
+    take(people.back().mask, taken);
   }
   return people;
 }

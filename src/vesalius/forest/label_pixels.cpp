@@ -71,10 +71,14 @@ class Chooser {
     });
     LabelImage out(depth_.width(), depth_.height(), kBackground);
     parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
+      const auto part = [parts = choice_.part_count](std::uint8_t c) { return c < parts ? c : kBackground; };
       for (int v = box_.v + begin; v < box_.v + end; ++v) {
-        for (int u = box_.u; u < box_.u + box_.width; ++u) {
-          const std::uint8_t label = unsure_(u, v) != 0 ? ask_neighbours(u, v) : first_(u, v);
-          out(u, v) = label < choice_.part_count ? label : kBackground;
+        const std::uint8_t *first = first_.row(v) + box_.u, *unsure = unsure_.row(v) + box_.u,
+                           *last = unsure + box_.width;
+        std::uint8_t* to = out.row(v) + box_.u;
+        std::transform(first, first + box_.width, to, part);
+        for (const std::uint8_t* at = unsure; (at = std::find(at, last, std::uint8_t{1})) != last; ++at) {
+          to[at - unsure] = part(ask_neighbours(box_.u + int(at - unsure), v));
         }
       }
     });
@@ -89,11 +93,16 @@ class Chooser {
     const bool rivalled = classes_ > choice_.part_count;
     const std::uint8_t* settled =
         rivalled && !posteriors_.settled.empty() ? posteriors_.settled.row(v) + box_.u : nullptr;
-    for (std::size_t i = 0; i < skip.size(); ++i) {
-      skip[i] = depth[i] == 0 || (prior != nullptr && prior[i] == 0) ? 1 : 0;
-      if (settled == nullptr || settled[i] == 0) continue;
-      skip[i] = 1;
-      first_(box_.u + int(i), v) = static_cast<std::uint8_t>(choice_.part_count);
+    std::transform(depth, depth + box_.width, skip.begin(), [](std::uint16_t mm) { return std::uint8_t(mm == 0); });
+    const auto or_none = [](std::uint8_t is, std::uint8_t other) { return std::uint8_t(is | (other == 0)); };
+    const auto or_any = [](std::uint8_t is, std::uint8_t other) { return std::uint8_t(is | (other != 0)); };
+    if (prior != nullptr) std::transform(skip.begin(), skip.end(), prior, skip.begin(), or_none);
+    if (settled != nullptr) {
+      std::transform(skip.begin(), skip.end(), settled, skip.begin(), or_any);
+      const auto background = static_cast<std::uint8_t>(choice_.part_count);
+      std::uint8_t* first = first_.row(v) + box_.u;
+      std::transform(settled, settled + box_.width, first,
+                     [=](std::uint8_t is) { return is != 0 ? background : kBackground; });
     }
     find_top_two(posteriors_.at(box_.u, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count,
                  skip.data(), box_.width, parts.data());
