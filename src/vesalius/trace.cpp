@@ -8,10 +8,13 @@ void enlarge(const GridGuide& guide, Person& person) {
   const Box box = guide.whole_box(person.box);
   Mask mask(guide.width(), guide.height(), 0);
   LabelImage labels(guide.width(), guide.height(), kBackground);
-  guide.each(box, [&](int u, int v, int column, int row) {
-    mask(u, v) = person.mask(column, row);
-    labels(u, v) = person.labels(column, row);
-  });
+  // Whoever is not in the mask has no label.
+  guide.each(
+      box, [&](int column, int row) { return person.mask(column, row) != 0; },
+      [&](int u, int v, int column, int row) {
+        mask(u, v) = person.mask(column, row);
+        labels(u, v) = person.labels(column, row);
+      });
   person.box = bounding_box(mask, box);
   person.mask = std::move(mask);
   person.labels = std::move(labels);

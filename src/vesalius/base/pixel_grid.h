@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "vesalius/frame.h"
 #include "vesalius/image.h"
@@ -105,8 +106,10 @@ class GridGuide {
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside) const {
     Image<T> out(depth_.width(), depth_.height(), outside);
-    each(whole_box({0, 0, coarse.width(), coarse.height()}),
-         [&](int u, int v, int column, int row) { out(u, v) = coarse(column, row); });
+    each(
+        whole_box({0, 0, coarse.width(), coarse.height()}),
+        [&](int column, int row) { return coarse(column, row) != outside; },
+        [&](int u, int v, int column, int row) { out(u, v) = coarse(column, row); });
     return out;
   }
 
@@ -119,11 +122,11 @@ class GridGuide {
   }
 
   /// Calls `use(u, v, column, row)` for the pixels in a box that take the value of one of the coarse picture, on all
-  /// threads.
-  template <class Use>
-  void each(const Box& box, const Use& use) const {
+  /// threads. Those may be left out around which `matters(column, row)` is true of none.
+  template <class Matters, class Use>
+  void each(const Box& box, const Matters& matters, const Use& use) const {
     parallel_ranges(box.height, kRows, [&](int begin, int end) {
-      for (int v = box.v + begin; v < box.v + end; ++v) each_in_row(v, box.u, box.u + box.width, use);
+      for (int v = box.v + begin; v < box.v + end; ++v) each_in_row(v, box.u, box.u + box.width, matters, use);
     });
   }
 
@@ -139,13 +142,19 @@ class GridGuide {
   static constexpr int kRows = 16;
 
   /// As nearest_on_grid finds them, without a division for each.
-  template <class Use>
-  void each_in_row(int v, int left, int right, const Use& use) const {
+  template <class Matters, class Use>
+  void each_in_row(int v, int left, int right, const Matters& matters, const Use& use) const {
     const int row = v / step_, above = row * step_, below = above + step_;
     const bool between = above != v && below < depth_.height();
     const std::uint16_t *here = depth_.row(v), *upper = depth_.row(above), *lower = depth_.row(between ? below : above);
+    const auto some = [&](int column) {
+      return column * step_ < depth_.width() && (matters(column, row) || (between && matters(column, row + 1)));
+    };
+    bool these = false, those = some(left / step_);
     for (int column = left / step_, at = column * step_; at < right; ++column, at += step_) {
       const int next = at + step_;
+      these = std::exchange(those, some(column + 1));
+      if (!these && !those) continue;
       for (int u = std::max(left, at); u < std::min(right, next); ++u) {
         if (here[u] == 0) continue;
         int least = grid_within_mm(here[u]) + 1, nearest = -1;

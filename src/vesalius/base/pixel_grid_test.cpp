@@ -182,7 +182,9 @@ TEST(GridGuide, NeedsOnlyABoxOfTheGrid) {
   coarse(6, 3) = 1;
   Mask enlarged(23, 17, 0);
   const Box box = guide.whole_box(bounding_box(coarse));
-  guide.each(box, [&](int u, int v, int column, int row) { enlarged(u, v) = coarse(column, row); });
+  guide.each(
+      box, [&](int column, int row) { return coarse(column, row) != 0; },
+      [&](int u, int v, int column, int row) { enlarged(u, v) = coarse(column, row); });
   EXPECT_EQ(enlarged, guide.enlarge(coarse, std::uint8_t{0}));
   EXPECT_EQ(guide.whole_box(Box{}).width, 0);
   EXPECT_EQ(guide.enlarge(Mask(), std::uint8_t{0}), Mask(23, 17, 0)) << "labels of a candidate without pixels";
