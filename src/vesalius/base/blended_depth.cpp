@@ -23,11 +23,13 @@ struct Pixel {
 
 /// Appends the readings around a hole that were blended with it.
 void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::vector<Pixel>& blended) {
+  const bool inner = depth.contains(hole.u - 2, hole.v - 2) && depth.contains(hole.u + 2, hole.v + 2);
+  const std::uint16_t* at = depth.row(hole.v) + hole.u;
   for (const auto& [du, dv] : kAround) {
-    const Pixel beside{hole.u + du, hole.v + dv}, behind{hole.u + 2 * du, hole.v + 2 * dv};
-    if (!depth.contains(behind.u, behind.v)) continue;
-    const int near = depth(beside.u, beside.v), far = depth(behind.u, behind.v);
-    if (near != 0 && float(near) < least_share * float(far)) blended.push_back(beside);
+    if (!inner && !depth.contains(hole.u + 2 * du, hole.v + 2 * dv)) continue;
+    const std::ptrdiff_t step = std::ptrdiff_t{dv} * depth.width() + du;
+    const int near = at[step], far = at[2 * step];
+    if (near != 0 && float(near) < least_share * float(far)) blended.push_back({hole.u + du, hole.v + dv});
   }
 }
 
