@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "vesalius/base/pixel_grid.h"
+#include "vesalius/base/rays.h"
 #include "vesalius/parallel.h"
+#include "vesalius/row_kernels.h"
 
 namespace vesalius {
 namespace {
@@ -63,19 +65,21 @@ Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& fr
   const std::vector<Reach> reaches = reaches_of(capsules, frame.camera, reach_m);
   Box all;
   for (const Reach& one : reaches) all = around(all, one.box);
+  const Rays rays(frame.camera);
   parallel_ranges(all.height, kRowGrain, [&](int begin, int end) {
-    std::vector<Eigen::Vector3f> points(static_cast<std::size_t>(all.width));  // of a row, for all capsules
+    const auto width = static_cast<std::size_t>(frame.depth.width());
+    PointRow points{std::vector<float>(width), std::vector<float>(width), std::vector<float>(width)};
     for (int v = all.v + begin; v < all.v + end; ++v) {
-      for (int i = 0; i < all.width; ++i) points[i] = point_at(frame.camera, frame.depth, all.u + i, v);
-      float* row = distance.row(v);
+      for (int u = all.u; u < all.u + all.width; ++u) {
+        const Eigen::Vector3f point = rays.point(frame.depth, u, v);
+        points.x[u] = point.x();
+        points.y[u] = point.y();
+        points.z[u] = point.z();
+      }
       for (const auto& [capsule, nearest_m, farthest_m, box] : reaches) {
         if (v < box.v || v >= box.v + box.height) continue;
-        for (int u = box.u; u < box.u + box.width; ++u) {
-          const Eigen::Vector3f& point = points[u - all.u];
-          if (point.z() == 0.F || point.z() < nearest_m || point.z() > farthest_m) continue;
-          const float d = capsule.distance(point);
-          if (d < reach_m) row[u] = std::min(row[u], d);
-        }
+        lower_distances(points, static_cast<std::size_t>(box.u), static_cast<std::size_t>(box.u + box.width), capsule,
+                        nearest_m, farthest_m, reach_m, distance.row(v));
       }
     }
   });

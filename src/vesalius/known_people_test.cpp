@@ -70,6 +70,23 @@ TEST(KnownPeople, DistanceIsThatOfTheNearestCapsuleEverywhere) {
   }
 }
 
+TEST(SharedPixels, AreThoseOfBothAmongThoseOfEither) {
+  Random random(6);
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{255, 1}, std::pair{128, 2}, std::pair{97, 60}}) {
+    for (const std::uint32_t rare : {1U, 2U, 9U}) {  // 1: all are inside
+      Mask a(width, height, 0), b(width, height, 0);
+      float both = 0.F, either = 0.F;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        a[i] = random.below(rare) == 0 ? static_cast<std::uint8_t>(1 + random.below(2)) : std::uint8_t{0};
+        b[i] = random.below(rare) == 0 ? std::uint8_t{1} : std::uint8_t{0};
+        both += a[i] != 0 && b[i] != 0 ? 1.F : 0.F;
+        either += a[i] != 0 || b[i] != 0 ? 1.F : 0.F;
+      }
+      EXPECT_EQ(shared_pixels(a, b), either > 0.F ? both / either : 0.F) << width << 'x' << height << ", " << rare;
+    }
+  }
+}
+
 TEST(KnownPeople, CapsulesThatAreNoNumbersAreNowhere) {
   const float nan = std::nanf("");
   for (const float value : {nan, kFar, -kFar}) {

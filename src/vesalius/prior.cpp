@@ -1,5 +1,6 @@
 #include "vesalius/prior.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -10,12 +11,18 @@
 namespace vesalius {
 
 float shared_pixels(const Mask& a, const Mask& b) {
+  constexpr std::size_t kAtOnce = 255;  // what a byte can count: vectors then hold most
   std::uint32_t both = 0, either = 0;
   const std::uint8_t *of_a = a.data(), *of_b = b.data();
-  for (std::size_t i = 0; i < a.size(); ++i) {  // without branches, for vectors
-    const std::uint32_t in_a = of_a[i] != 0 ? 1 : 0, in_b = of_b[i] != 0 ? 1 : 0;
-    both += in_a & in_b;
-    either += in_a | in_b;
+  for (std::size_t begin = 0; begin < a.size(); begin += kAtOnce) {
+    std::uint8_t some_both = 0, some_either = 0;
+    for (std::size_t i = begin; i < std::min(begin + kAtOnce, a.size()); ++i) {
+      const auto in_a = static_cast<std::uint8_t>(of_a[i] != 0), in_b = static_cast<std::uint8_t>(of_b[i] != 0);
+      some_both = static_cast<std::uint8_t>(some_both + (in_a & in_b));
+      some_either = static_cast<std::uint8_t>(some_either + (in_a | in_b));
+    }
+    both += some_both;
+    either += some_either;
   }
   return either > 0 ? float(both) / float(either) : 0.F;
 }

@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -158,6 +159,46 @@ void MarkNear(const std::uint16_t* depth, int u, int count, const Ball& ball, st
   for (; i < count; ++i) MarkSome(one, depth + i, u + i, ball, mask + i);
 }
 
+constexpr float kLeastSquare_m2 = 1e-8F;  // of a capsule's axis, as Capsule::distance has it
+
+/// Every step is that of Capsule::distance.
+template <class D>
+HWY_INLINE void ComeNearer(D d, const PointRow& points, std::size_t i, const Capsule& capsule, float nearest_m,
+                           float farthest_m, float reach_m, float* distance) {
+  const auto of = [&](float number) { return hn::Set(d, number); };
+  const auto z = hn::LoadU(d, points.z.data() + i);
+  const auto there = hn::And(hn::And(hn::Ge(z, of(nearest_m)), hn::Le(z, of(farthest_m))), hn::Ne(z, of(0.F)));
+  if (hn::AllFalse(d, there)) return;
+  const Eigen::Vector3f axis = capsule.to - capsule.from;
+  const auto dot = [](auto ax, auto ay, auto az, auto bx, auto by, auto bz) {
+    return hn::Add(hn::Mul(ax, bx), hn::Add(hn::Mul(ay, by), hn::Mul(az, bz)));
+  };
+  const auto x = hn::Sub(hn::LoadU(d, points.x.data() + i), of(capsule.from.x()));
+  const auto y = hn::Sub(hn::LoadU(d, points.y.data() + i), of(capsule.from.y()));
+  const auto off_z = hn::Sub(z, of(capsule.from.z()));
+  const auto share = hn::Div(dot(x, y, off_z, of(axis.x()), of(axis.y()), of(axis.z())),
+                             of(std::max(axis.squaredNorm(), kLeastSquare_m2)));
+  const auto along = hn::Min(hn::Max(share, of(0.F)), of(1.F));
+  const auto rx = hn::Sub(x, hn::Mul(along, of(axis.x()))), ry = hn::Sub(y, hn::Mul(along, of(axis.y())));
+  const auto rz = hn::Sub(off_z, hn::Mul(along, of(axis.z())));
+  const auto radius = hn::Add(of(capsule.from_radius), hn::Mul(along, of(capsule.to_radius - capsule.from_radius)));
+  const auto outside = hn::Sub(hn::Sqrt(dot(rx, ry, rz, rx, ry, rz)), radius);
+  const auto before = hn::LoadU(d, distance + i);
+  const auto nearer = hn::And(there, hn::Lt(outside, of(reach_m)));
+  hn::StoreU(hn::IfThenElse(nearer, hn::Min(before, outside), before), d, distance + i);
+}
+
+void LowerDistances(const PointRow& points, std::size_t begin, std::size_t end, const Capsule& capsule, float nearest_m,
+                    float farthest_m, float reach_m, float* distance) {
+  const hn::ScalableTag<float> many;
+  const hn::CappedTag<float, 1> one;
+  std::size_t i = begin;
+  for (; i + hn::Lanes(many) <= end; i += hn::Lanes(many)) {
+    ComeNearer(many, points, i, capsule, nearest_m, farthest_m, reach_m, distance);
+  }
+  for (; i < end; ++i) ComeNearer(one, points, i, capsule, nearest_m, farthest_m, reach_m, distance);
+}
+
 }  // namespace vesalius::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -165,6 +206,7 @@ HWY_AFTER_NAMESPACE();
 namespace vesalius {
 
 HWY_EXPORT(ClassifyHues);
+HWY_EXPORT(LowerDistances);
 HWY_EXPORT(MarkNear);
 HWY_EXPORT(SumBodies);
 
@@ -182,6 +224,11 @@ void mark_near(const DepthImage& depth, const Camera& camera, const Eigen::Vecto
     ball.y_per_m = (float(v) - camera.cy) / camera.fy;
     HWY_DYNAMIC_DISPATCH(MarkNear)(depth.row(v) + box.u, box.u, box.width, ball, mask.row(v) + box.u);
   }
+}
+
+void lower_distances(const PointRow& points, std::size_t begin, std::size_t end, const Capsule& capsule,
+                     float nearest_m, float farthest_m, float reach_m, float* distance) {
+  HWY_DYNAMIC_DISPATCH(LowerDistances)(points, begin, end, capsule, nearest_m, farthest_m, reach_m, distance);
 }
 
 void classify_hues(const Rgb* colours, int count, int hues, std::uint16_t* classes) {

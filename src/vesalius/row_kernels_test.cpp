@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "vesalius/base/random.h"
@@ -67,6 +68,38 @@ TEST(MarkNear, AgreesWithThePointsOfPixelsOnEveryInstructionSet) {
       Mask mask = before;
       mark_near(depth, camera, at, radius, box, mask);
       EXPECT_EQ(mask, expected) << target << ", turn " << turn;
+    });
+  }
+}
+
+TEST(LowerDistances, AgreesWithTheCapsulesOnEveryInstructionSet) {
+  Random random(9);
+  const auto number = [&](double low, double high) { return float(random.uniform(low, high)); };
+  constexpr std::size_t kCount = 53;
+  for (int turn = 0; turn < 30; ++turn) {
+    PointRow points;
+    std::vector<float> before;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      points.x.push_back(number(-0.6, 0.6));
+      points.y.push_back(number(-0.6, 0.6));
+      points.z.push_back(random.below(5) == 0 ? 0.F : number(1.0, 2.2));
+      before.push_back(random.below(3) == 0 ? number(-0.1, 0.3) : std::numeric_limits<float>::infinity());
+    }
+    const Eigen::Vector3f from(number(-0.5, 0.5), number(-0.5, 0.5), number(1.2, 1.8));
+    const Eigen::Vector3f way(number(-0.4, 0.4), number(-0.4, 0.4), number(-0.2, 0.2));
+    const Eigen::Vector3f to = turn == 0 ? from : Eigen::Vector3f(from + way);
+    const Capsule capsule{from, to, number(0.0, 0.2), number(0.0, 0.2)};
+    const std::size_t begin = random.below(20), end = begin + random.below(34);
+    std::vector<float> expected = before;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (points.z[i] == 0.F || points.z[i] < 1.1F || points.z[i] > 2.F) continue;
+      const float d = capsule.distance({points.x[i], points.y[i], points.z[i]});
+      if (d < 0.25F) expected[i] = std::min(expected[i], d);
+    }
+    for_each_target([&](const char* target) {
+      std::vector<float> distance = before;
+      lower_distances(points, begin, end, capsule, 1.1F, 2.F, 0.25F, distance.data());
+      EXPECT_EQ(distance, expected) << target << ", turn " << turn;
     });
   }
 }
