@@ -200,7 +200,7 @@ float certainty_of(const Candidate& candidate, const Prior& prior) {
 
 /// Adds the pixels of a mask to others.
 void take(const Mask& mask, Mask& taken) {
-  std::transform(taken.begin(), taken.end(), mask.begin(), taken.begin(), std::bit_or<std::uint8_t>());
+  std::transform(taken.begin(), taken.end(), mask.begin(), taken.begin(), std::bit_or<>());
 }
 
 Scenery look_around(const Method& method, const Frame& frame, const Scene& scene,

@@ -96,6 +96,7 @@ void PersonGrower::refuse_looks(const Skeleton& rough, const Mask& seeds, const 
 std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
                                      const std::vector<AppearanceHistogram>& known) const {
   std::vector<Reach> reaches;
+  reaches.reserve(people.size());
   for (const Skeleton& person : people) reaches.push_back(reach_of(person));
   return grow(people, std::move(reaches), clusters, known, {0, 0, frame_.depth.width(), frame_.depth.height()});
 }

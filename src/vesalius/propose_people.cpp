@@ -132,7 +132,7 @@ class Proposer {
     bar_groups(scene_.groups, group, around(reach.box, box), closed);
     const Mask grown = grower.grow(candidate.rough, std::move(reach), clusters, box);
     std::transform(candidate.grown.begin(), candidate.grown.end(), grown.begin(), candidate.grown.begin(),
-                   std::bit_or<std::uint8_t>());
+                   std::bit_or<>());
     return candidate;
   }
 
