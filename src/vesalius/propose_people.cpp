@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "vesalius/base/pixel_grid.h"
@@ -37,7 +38,8 @@ void bar_background(const Posteriors& posteriors, int parts, double least, const
       }
       sum_bodies(posteriors, box.u, v, parts, skip.data(), box.width, sums.data());
       for (std::size_t i = 0; i < sums.size(); ++i) {
-        if (sums[i].all > 0 && double(sums[i].body) / sums[i].all < least) barred[i] = 1;
+        const std::optional<double> share = sums[i].share();
+        if (share && *share < least) barred[i] = 1;
       }
     }
   });

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vesalius/frame.h"
@@ -15,6 +16,9 @@ namespace vesalius {
 /// Sums of a pixel's posteriors: of those of the parts, and of all. All are 0 where depth has no reading.
 struct BodySums {
   std::int32_t body = 0, all = 0;
+
+  /// As body_share.
+  std::optional<double> share() const { return all > 0 ? std::optional(double(body) / all) : std::nullopt; }
 };
 /// Writes the sums of `count` pixels from (u, v) on; 0 where `skip` is not. The parts are the first `parts` classes.
 void sum_bodies(const Posteriors& posteriors, int u, int v, int parts, const std::uint8_t* skip, int count,

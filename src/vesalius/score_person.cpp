@@ -303,8 +303,9 @@ float mean_body_outside(const Mask& candidates, const DepthImage& depth, const P
     for (int u = 0; u < depth.width(); u += kEvery) skip[u] = depth(u, v) == 0 || candidates(u, v) != 0 ? 1 : 0;
     sum_bodies(posteriors, 0, v, parts, skip.data(), depth.width(), sums.data());
     for (const BodySums& of : sums) {
-      if (of.all == 0) continue;
-      sum += double(of.body) / of.all;
+      const std::optional<double> share = of.share();
+      if (!share) continue;
+      sum += *share;
       ++pixels;
     }
   }
