@@ -134,7 +134,7 @@ int KnownPeople::shown_by(const Mask& mask) const {
   return best;
 }
 
-void KnownPeople::correct(int owner, Mask& mask) const {
+void KnownPeople::correct(int owner, bool at_flesh, Mask& mask) const {
   if (owner_.empty()) return;
   const Prior::KnownPerson* known = owner < 0 ? nullptr : &prior_.people[static_cast<std::size_t>(owner)];
   if (known != nullptr && known->flesh.empty()) known = nullptr;
@@ -143,7 +143,7 @@ void KnownPeople::correct(int owner, Mask& mask) const {
       if (known != nullptr && known->mask(u, v) == kSure) mask(u, v) = 1;
       if (mask(u, v) == 0) continue;
       const bool of_another = owner_(u, v) != kNobody && owner_(u, v) != owner;
-      const bool far_off = known != nullptr && known->mask(u, v) == 0;
+      const bool far_off = at_flesh && known != nullptr && known->mask(u, v) == 0;
       if (of_another || (far_off && body_share(posteriors_, u, v, parts_).value_or(1.0) < kSureBody)) mask(u, v) = 0;
     }
   }

@@ -30,8 +30,9 @@ class KnownPeople {
   int shown_by(const Mask& mask) const;
 
   /// Takes from the mask of known person `owner` (-1: nobody known) what belongs to other people who are sure. If the
-  /// owner's flesh is known, adds what surely belongs to the owner, and takes away what is neither near nor body.
-  void correct(int owner, Mask& mask) const;
+  /// owner's flesh is known, adds what surely belongs to the owner, and, if the owner is `at_flesh`, takes away what is
+  /// neither near nor body.
+  void correct(int owner, bool at_flesh, Mask& mask) const;
 
  private:
   void give(std::size_t pixel, const std::vector<Image<float>>& distance, Prior& prior);

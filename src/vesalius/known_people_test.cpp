@@ -108,7 +108,7 @@ TEST(KnownPeople, TwoWhoTouchDivideThePixelsByNearness) {
   }
   // A mask over both becomes that of the one whom it is taken for.
   Mask both(kWidth, kHeight, 1);
-  known.correct(0, both);
+  known.correct(0, true, both);
   EXPECT_EQ(both(20, 0), 1) << "far from both the forest is sure of a body";
   for (int u = 0; u < kWidth; ++u) EXPECT_EQ(both(u, kHeight / 2), prior.people[1].mask(u, kHeight / 2) == 0) << u;
 }
@@ -155,9 +155,9 @@ TEST(KnownPeople, AGuessTakesNothingFromWhoIsSure) {
   EXPECT_EQ(prior.people[0].mask(39, kHeight / 2), 0);
   EXPECT_NE(prior.people[1].mask(39, kHeight / 2), 0);
   Mask mask(kWidth, kHeight, 1);
-  known.correct(1, mask);
+  known.correct(1, true, mask);
   EXPECT_EQ(mask(39, kHeight / 2), 1);
-  known.correct(-1, mask);
+  known.correct(-1, true, mask);
   EXPECT_EQ(mask(39, kHeight / 2), 0) << "nobody else grows over who is sure";
 }
 
@@ -168,9 +168,20 @@ TEST(KnownPeople, AMaskGainsWhatIsNearAndLosesWhatIsNeitherNearNorBody) {
   const KnownPeople known(frame, kNothingFlat, posteriors, 1, prior);
   Mask mask(kWidth, kHeight, 0);
   mask(5, 5) = 1;
-  known.correct(0, mask);
+  known.correct(0, true, mask);
   EXPECT_EQ(mask(5, 5), 0);
   EXPECT_EQ(mask(39, kHeight / 2), 1);
+}
+
+TEST(KnownPeople, AMaskOfSomebodyWhoIsElsewhereLosesNothing) {
+  const Frame frame = wall(2000);
+  const Posteriors posteriors = everywhere(0.45);
+  Prior prior{{somebody(0.F, 2.F)}};
+  const KnownPeople known(frame, kNothingFlat, posteriors, 1, prior);
+  Mask mask(kWidth, kHeight, 0);
+  mask(5, 5) = 1;
+  known.correct(0, false, mask);
+  EXPECT_EQ(mask(5, 5), 1);
 }
 
 TEST(KnownPeople, AMaskShowsWhomItOverlapsMost) {
@@ -195,7 +206,7 @@ TEST(KnownPeople, WithoutFleshNothingChanges) {
   const KnownPeople known(frame, kNothingFlat, posteriors, 1, prior);
   EXPECT_EQ(prior.people[0].mask, mask);
   Mask given(kWidth, kHeight, 1);
-  known.correct(0, given);
+  known.correct(0, true, given);
   EXPECT_EQ(given, Mask(kWidth, kHeight, 1));
 }
 

@@ -281,8 +281,11 @@ TEST(ProposePeople, APieceThatOnlyThePriorTellsIsNoSecondPerson) {
   Model model(std::make_shared<test::VotingLabeller>(truth, 0.05F));
   model.judge = judge_by("core", 0.5F);  // takes the whole person, and no leg
   for (const float odds : {1.F, 1e6F}) {
-    const Prior prior{{known_between(truth, 0, "l_leg", "l_foot", odds)}};
-    const std::vector<Person> people = Detector(model).detect(truth.frame, prior);
+    const Prior prior{
+        {known_between(truth, 0, "neck", "l_thigh", 20.F), known_between(truth, 0, "l_leg", "l_foot", odds)}};
+    Trace trace;
+    const std::vector<Person> people = Detector(model).detect(truth.frame, prior, &trace);
+    ASSERT_EQ(trace.candidates.size(), 2U);
     ASSERT_EQ(people.size(), 1U) << odds;
     EXPECT_GT(overlap(people[0].mask, truth, 0), 0.95);
     EXPECT_GT(people[0].skeleton.found, 15);
@@ -294,6 +297,19 @@ TEST(ProposePeople, APieceThatOnlyThePriorTellsIsNoSecondPerson) {
     }
     EXPECT_GT(labelled, pixels / 2) << "the pixels keep their parts";
   }
+}
+
+TEST(ProposePeople, WhoMovedIsKnownByThePieceThatIsWhereExpected) {
+  const LabelledFrame truth = render(people_at({{0.F, 0.9F, 2.5F}}), kCamera, paper_body());
+  Model model(std::make_shared<test::VotingLabeller>(truth, 0.05F));
+  model.judge = judge_by("groups", 0.5F);  // takes everybody
+  const Prior prior{{known_between(truth, 0, "l_foot", "l_foot", 20.F)}};
+  Trace trace;
+  const std::vector<Person> people = Detector(model).detect(truth.frame, prior, &trace);
+  ASSERT_EQ(people.size(), 1U);
+  EXPECT_GT(overlap(people[0].mask, truth, 0), 0.95);
+  ASSERT_EQ(trace.candidates.size(), 1U) << "the foot is no candidate of its own";
+  EXPECT_EQ(trace.candidates[0].known, 0);
 }
 
 TEST(ProposePeople, TwoKnownPeopleWhoAreClearStayTwoThoughTheirVotesAgree) {
