@@ -24,10 +24,26 @@ struct PersonVote {
 /// There is a vote for every so many pixels of every so many rows, the first included.
 inline constexpr int kVoteStep = 4;
 
+/// Where pixels say that the parts of their person are, also those that are hidden.
+struct PartVotes {
+  int width = 0;
+  int height = 0;
+  int parts = 0;
+  /// Ways from a pixel's point to the centres of the parts' volumes, mm, optical frame: [row][column][part][axis].
+  std::vector<std::int16_t> ways_mm = {};
+
+  const std::int16_t* at(int column, int row) const {
+    return ways_mm.data() + (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + std::size_t(column)) *
+                                std::size_t(parts) * 3;
+  }
+  friend bool operator==(const PartVotes&, const PartVotes&) = default;
+};
+/// As kVoteStep, of PartVotes.
+inline constexpr int kPartVoteStep = 8;
+
 /// What a labeller knows of a picture: P(c | x) of every pixel, `classes` values for each pixel, pixel after pixel.
 /// Body parts come first, then the background. All are zero if depth has no reading. What else a labeller may know is
-/// empty where it does not, and who wants it asks for that: headings, votes. A new kind of answer (places of parts) is
-/// a member beside `turns`.
+/// empty where it does not, and who wants it asks for that: headings, votes.
 struct Posteriors {
   int width = 0;
   int height = 0;
@@ -45,6 +61,8 @@ struct Posteriors {
   /// Votes for the middles of people, a picture of kVoteStep-th the size, rounded up. Undefined where depth has no
   /// reading. Empty if the labeller knows of none.
   Image<PersonVote> votes = {};
+  /// Votes for the centres of parts, a picture of kPartVoteStep-th the size, rounded up; as `votes`.
+  PartVotes part_votes = {};
 
   const std::uint16_t* at(int u, int v) const {
     return sums.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) *

@@ -76,6 +76,7 @@ TEST(Card, GivesTheProcessorsBitsForNetworks) {
       processor.run(input, expected);
       EXPECT_TRUE(found.classes.values == expected.classes.values);
       EXPECT_TRUE(found.person.values == expected.person.values);
+      EXPECT_TRUE(found.centres.values == expected.centres.values);
     }
   }
 }

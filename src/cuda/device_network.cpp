@@ -42,7 +42,8 @@ void fetch(Stream& stream, const NetworkValues& head, WideImage& to) {
 DeviceNetwork::DeviceNetwork(const Network& network, int parts, std::shared_ptr<Device> device)
     : device_(std::move(device)),
       classes_of_(static_cast<std::size_t>(network.classes_of) + 1),
-      person_of_(static_cast<std::size_t>(network.person_of) + 1) {
+      person_of_(static_cast<std::size_t>(network.person_of) + 1),
+      centres_of_(static_cast<std::size_t>(network.centres_of) + 1) {
   check(network, parts);
   pictures_ = pictures_of(network);
   const std::unique_ptr<Stream> stream = device_->make_stream();
@@ -101,6 +102,11 @@ void DeviceNetwork::run(const NetworkInput& input, NetworkResult& out) const {
   }
   fetch(*space.stream, pictures[classes_of_], out.classes);
   fetch(*space.stream, pictures[person_of_], out.person);
+  if (centres_of_ == 0) {
+    out.centres = {};
+  } else {
+    fetch(*space.stream, pictures[centres_of_], out.centres);
+  }
   space.stream->wait();
   spaces_.give_back(std::move(space));
 }

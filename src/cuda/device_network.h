@@ -37,6 +37,7 @@ class DeviceNetwork {
   std::vector<NetworkPicture> pictures_;
   std::vector<Layer> layers_;
   std::size_t classes_of_, person_of_;  ///< pictures
+  std::size_t centres_of_;              ///< picture; 0: none
   mutable Pool<Workspace> spaces_;
 };
 

@@ -39,6 +39,7 @@ void expect_same(const WideImage& found, const WideImage& expected) {
 void expect_same(const NetworkResult& found, const NetworkResult& expected) {
   expect_same(found.classes, expected.classes);
   expect_same(found.person, expected.person);
+  expect_same(found.centres, expected.centres);
 }
 
 NetworkResult on_processor(const Network& network, int parts, const NetworkInput& input) {
@@ -121,11 +122,23 @@ TEST(DeviceNetwork, MovesTheInputUpAndTheHeadsDown) {
   NetworkResult found;
   network.run(input, found);
   const std::size_t up = device->copied_to_device(), down = device->copied_to_host(), used = device->allocated_bytes();
-  EXPECT_EQ(down, 2 * (found.classes.values.size() + found.person.values.size()));
+  EXPECT_EQ(down, 2 * (found.classes.values.size() + found.person.values.size() + found.centres.values.size()));
   network.run(input, found);
   EXPECT_EQ(device->copied_to_device() - up, input.values.size());
   network.run(random_input(random, 32, 32), found);
   EXPECT_EQ(device->allocated_bytes(), used) << "memory is kept for the next picture";
+}
+
+TEST(DeviceNetwork, GivesNoCentresWhereTheNetworkHasNone) {
+  Random random(28);
+  const Network network = random_network(random, kTinyShape, kParts), without = test::without_centres(network);
+  const NetworkInput input = random_input(random, 64, 32);
+  NetworkResult found;
+  DeviceNetwork(network, kParts, simulated()).run(input, found);
+  EXPECT_EQ(found.centres.values.size(), 8U * 4U * kParts * kCentreNumbers);
+  DeviceNetwork(without, kParts, simulated()).run(input, found);
+  expect_same(found, on_processor(without, kParts, input));
+  EXPECT_TRUE(found.centres.values.empty());
 }
 
 TEST(DeviceNetwork, SaysWhenADeviceIsTooSmallOrLost) {
@@ -140,7 +153,7 @@ TEST(DeviceNetwork, SaysWhenADeviceIsTooSmallOrLost) {
   crowded.run(small, found);  // a smaller picture still fits
   expect_same(found, on_processor(network, kParts, small));
 
-  const int operations = 4 * int(network.layers.size()) + 3;  // numbers of each, its run, the input and the heads
+  const int operations = 4 * int(network.layers.size()) + 4;  // numbers of each, its run, the input and the heads
   for (int after = 0; after <= operations; ++after) {
     const auto label = [&] { DeviceNetwork(network, kParts, simulated({.lost_after = after})).run(small, found); };
     if (after < operations) {

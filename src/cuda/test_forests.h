@@ -100,6 +100,7 @@ inline void expect_same(const Posteriors& found, const Posteriors& expected, con
   ASSERT_EQ(found.settled, expected.settled);
   ASSERT_EQ(found.sums, expected.sums);
   ASSERT_EQ(found.votes, expected.votes);
+  ASSERT_EQ(found.part_votes, expected.part_votes);
   for (int v = 0; v < depth.height() && found.headings > 0; ++v) {
     for (int u = 0; u < depth.width(); ++u) {
       if (depth(u, v) == 0 || (!expected.settled.empty() && expected.settled(u, v) != 0)) continue;

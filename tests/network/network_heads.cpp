@@ -1,7 +1,7 @@
 // Writes what a model's network is shown of frames and what its heads say, for training/network/tests/oracle_test.py.
-// For each frame, on the detector's grid: its focal length in pixels (f32), then four pictures, each as width, height
-// and channels (u32) and its numbers, pixel after pixel: depth in mm (u16), the network's input (u8), logits and votes
-// (i16). Little endian.
+// For each frame, on the detector's grid: its focal length in pixels (f32), then five pictures, each as width, height
+// and channels (u32) and its numbers, pixel after pixel: depth in mm (u16), the network's input (u8), logits, votes and
+// ways to the parts' centres (i16; 0x0 where the network has none). Little endian.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -75,6 +75,7 @@ int run(int argc, char** argv) {
     write_picture(input.width, input.height, input.values.data(), kNetworkInputs, out);
     write_head(result.classes, out);
     write_head(result.person, out);
+    write_head(result.centres, out);
   }
   write_file_atomically(out_file, out.bytes());
   return 0;

@@ -57,6 +57,7 @@ void write_network(ByteWriter& out, const Network& network) {
   }
   out.number(static_cast<std::uint16_t>(network.classes_of));
   out.number(static_cast<std::uint16_t>(network.person_of));
+  out.number(static_cast<std::uint16_t>(network.centres_of + 1));
 }
 
 namespace {
@@ -82,12 +83,13 @@ Convolution read_convolution(ByteReader& in) {
 
 }  // namespace
 
-Network read_network(ByteReader& in) {
+Network read_network(ByteReader& in, bool centres) {
   Network network;
   const int layers = in.number<std::uint16_t>("number of layers");
   for (int i = 0; i < layers; ++i) network.layers.push_back(read_convolution(in));
   network.classes_of = in.number<std::uint16_t>("layer of classes");
   network.person_of = in.number<std::uint16_t>("layer of votes");
+  if (centres) network.centres_of = in.number<std::uint16_t>("layer of centres") - 1;
   return network;
 }
 

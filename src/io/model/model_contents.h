@@ -18,7 +18,8 @@ void write_forest(ByteWriter& out, const Forest& forest);
 void read_forest(ByteReader& in, unsigned flags, Forest& forest);
 
 void write_network(ByteWriter& out, const Network& network);
-Network read_network(ByteReader& in);
+/// `centres`: whether the layer of centres stands there, as since version 2 of the section.
+Network read_network(ByteReader& in, bool centres = true);
 /// Reads what training a network leaves (docs/formats.md), for a body of so many parts. Throws Error for a file that
 /// cannot be read or whose network is inconsistent (check(Network)).
 Network load_network(const std::string& path, int parts);

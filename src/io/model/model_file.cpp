@@ -27,17 +27,20 @@ struct Content {
   std::string (*made_from)(const Model& model);
   void (*write)(ByteWriter& out, const Model& model);
   /// What comes before it in the list is read already.
-  void (*read)(ByteReader& in, const std::string& made_from, Model& model);
+  void (*read)(ByteReader& in, const ModelSection& section, Model& model);
+  int oldest = version;  ///< that is read
+
+  bool reads(const ModelSection& section) const { return section.version >= oldest && section.version <= version; }
 };
 
-void read_body(ByteReader& in, const std::string& /*made_from*/, Model& model) {
+void read_body(ByteReader& in, const ModelSection& /*section*/, Model& model) {
   model.body = parse_body_model(in.take(in.left(), "body model"), in.name());
   model.forest.body = model.body;
 }
 
-void read_forest_section(ByteReader& in, const std::string& made_from, Model& model) {
+void read_forest_section(ByteReader& in, const ModelSection& section, Model& model) {
   read_forest(in, in.number<std::uint16_t>("flags"), model.forest);
-  model.forest.recipe = made_from;
+  model.forest.recipe = section.made_from;
 }
 
 void write_headings_section(ByteWriter& out, const Model& model) {
@@ -45,10 +48,10 @@ void write_headings_section(ByteWriter& out, const Model& model) {
   write_headings(out, model.headings);
 }
 
-void read_headings_section(ByteReader& in, const std::string& made_from, Model& model) {
+void read_headings_section(ByteReader& in, const ModelSection& section, Model& model) {
   const int headings = in.number<std::uint16_t>("headings");
   model.headings = read_headings(in, headings, model.body.part_count());
-  model.headings.made_from = made_from;
+  model.headings.made_from = section.made_from;
 }
 
 template <BoostedTrees Model::*trees>
@@ -59,17 +62,17 @@ constexpr Content boosted(const char* name) {
           [](const Model& model) { return !(model.*trees).empty(); },
           [](const Model& model) { return (model.*trees).made_from; },
           [](ByteWriter& out, const Model& model) { write_boosted(out, model.*trees); },
-          [](ByteReader& in, const std::string& made_from, Model& model) {
+          [](ByteReader& in, const ModelSection& section, Model& model) {
             model.*trees = read_boosted(in, "boosted trees");
-            (model.*trees).made_from = made_from;
+            (model.*trees).made_from = section.made_from;
           }};
 }
 
 std::string made_by(const Model& model) { return labeller_recipe(model); }
 
-void read_network_section(ByteReader& in, const std::string& made_from, Model& model) {
-  auto network = std::make_shared<Network>(read_network(in));
-  network->made_from = made_from;
+void read_network_section(ByteReader& in, const ModelSection& section, Model& model) {
+  auto network = std::make_shared<Network>(read_network(in, section.version > 1));
+  network->made_from = section.made_from;
   model.network = std::move(network);
 }
 
@@ -78,8 +81,8 @@ constexpr std::array<Content, 6> kContents{
       [](ByteWriter& out, const Model& model) { out.bytes() += model.body.toml; }, read_body},
      {"forest", 1, false, [](const Model& model) { return model.network == nullptr; }, made_by,
       [](ByteWriter& out, const Model& model) { write_forest(out, model.forest); }, read_forest_section},
-     {"network", 1, false, [](const Model& model) { return model.network != nullptr; }, made_by,
-      [](ByteWriter& out, const Model& model) { write_network(out, *model.network); }, read_network_section},
+     {"network", 2, false, [](const Model& model) { return model.network != nullptr; }, made_by,
+      [](ByteWriter& out, const Model& model) { write_network(out, *model.network); }, read_network_section, 1},
      {"headings", 1, false, [](const Model& model) { return !model.headings.empty(); },
       [](const Model& model) { return model.headings.made_from; }, write_headings_section, read_headings_section},
      boosted<&Model::context>("context"),
@@ -97,12 +100,12 @@ void check_body_text(const BodyModel& body) {
 void check_known(const ModelSection& section, const std::string& name) {
   const auto kind = std::ranges::find(kContents, section.name, &Content::name);
   const bool known = kind != kContents.end();
-  if (section.skippable && (!known || kind->version != section.version)) return;
+  if (section.skippable && (!known || !kind->reads(section))) return;
   if (!known) {
     throw Error(
         fmt::format("{}: section \"{}\" is not known to this version, which cannot go without it", name, section.name));
   }
-  if (kind->version != section.version) {
+  if (!kind->reads(section)) {
     throw Error(fmt::format("{}: section \"{}\" is of version {}, this program reads {}", name, section.name,
                             section.version, kind->version));
   }
@@ -131,14 +134,14 @@ Model parse_model(std::string_view bytes, const std::string& name) {
   Model model;
   for (const Content& kind : kContents) {
     const auto section = std::ranges::find_if(
-        sections, [&](const ModelSection& each) { return each.name == kind.name && each.version == kind.version; });
+        sections, [&](const ModelSection& each) { return each.name == kind.name && kind.reads(each); });
     if (section == sections.end() && kind.needed) {
       throw Error(fmt::format("{}: no section \"{}\", expected one in every model", name, kind.name));
     }
     if (section == sections.end()) continue;
     const std::string place = fmt::format("{}: section \"{}\"", name, kind.name);
     ByteReader in(section->bytes, place);
-    kind.read(in, section->made_from, model);
+    kind.read(in, *section, model);
     in.expect_end();
   }
   if (model.network == nullptr && model.forest.trees.empty()) {

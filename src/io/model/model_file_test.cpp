@@ -4,7 +4,9 @@
 
 #include <functional>
 
+#include "io/files/atomic_file.h"
 #include "io/files/test_files.h"
+#include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
 #include "io/model/test_forest.h"
 #include "vesalius/error.h"
@@ -99,15 +101,68 @@ Model network_model() {
 }
 
 TEST(ModelFile, KeepsANetwork) {
-  const Model model = network_model();
+  for (const bool centres : {true, false}) {
+    Model model = network_model();
+    if (!centres) model.network = std::make_shared<Network>(test::without_centres(*model.network));
+    const std::string bytes = serialise_model(model);
+    const Model again = parse_model(bytes, "m");
+    ASSERT_NE(again.network, nullptr);
+    EXPECT_EQ(again.network->layers, model.network->layers);
+    EXPECT_EQ(again.network->classes_of, model.network->classes_of);
+    EXPECT_EQ(again.network->person_of, model.network->person_of);
+    EXPECT_EQ(again.network->centres_of, model.network->centres_of);
+    EXPECT_EQ(labeller_recipe(again), "frames of people");
+    EXPECT_EQ(serialise_model(again), bytes);
+  }
+}
+
+/// Returns a file whose section of the network is of another version and lacks as many bytes.
+std::string cut_network(const std::string& bytes, int version, std::size_t cut) {
+  std::vector<ModelSection> sections = split_sections(bytes, "m");
+  for (ModelSection& each : sections) {
+    if (each.name != "network") continue;
+    each.version = version;
+    each.bytes.remove_suffix(cut);
+  }
+  return join_sections(sections);
+}
+
+TEST(ModelFile, ReadsANetworkFromBeforeThereWereCentres) {
+  Model model = network_model();
+  model.network = std::make_shared<Network>(test::without_centres(*model.network));
   const std::string bytes = serialise_model(model);
-  const Model again = parse_model(bytes, "m");
-  ASSERT_NE(again.network, nullptr);
+  const Model again = parse_model(cut_network(bytes, 1, 2), "m");
   EXPECT_EQ(again.network->layers, model.network->layers);
-  EXPECT_EQ(again.network->classes_of, model.network->classes_of);
-  EXPECT_EQ(again.network->person_of, model.network->person_of);
-  EXPECT_EQ(labeller_recipe(again), "frames of people");
+  EXPECT_EQ(again.network->centres_of, -1);
   EXPECT_EQ(serialise_model(again), bytes);
+  const auto refused = [&](int version, std::size_t cut, const char* message) {
+    EXPECT_THAT([&] { parse_model(cut_network(bytes, version, cut), "m"); }, ThrowsMessage<Error>(HasSubstr(message)));
+  };
+  refused(1, 0, "section \"network\"");
+  refused(1, 3, "layer of votes");
+  refused(2, 1, "layer of centres");
+  refused(2, 2, "layer of centres");
+  refused(3, 0, "m: section \"network\" is of version 3, this program reads 2");
+  refused(0, 0, "m: section \"network\" is of version 0, this program reads 2");
+}
+
+TEST(ModelFile, LoadsWhatTrainingANetworkLeaves) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "a.network";
+  const Model model = network_model();
+  for (const bool centres : {true, false}) {
+    const Network network = centres ? *model.network : test::without_centres(*model.network);
+    ByteWriter file;
+    file.text("how it was made");
+    write_network(file, network);
+    write_file_atomically(path, file.bytes());
+    const Network again = load_network(path, 25);
+    EXPECT_EQ(again.layers, network.layers);
+    EXPECT_EQ(again.centres_of, network.centres_of);
+    EXPECT_EQ(again.made_from, "how it was made");
+    write_file_atomically(path, file.bytes().substr(0, file.bytes().size() - 1));
+    EXPECT_THAT([&] { load_network(path, 25); }, ThrowsMessage<Error>(HasSubstr("layer of centres")));
+  }
 }
 
 TEST(ModelFile, RefusesDamagedNetworks) { parse_changed(serialise_model(network_model()), "network", 23); }

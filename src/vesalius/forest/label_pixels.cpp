@@ -306,6 +306,7 @@ void TrainedLabeller::prepare(const DepthImage& depth, Posteriors& out) const {
   out.headings = layout_.headings;
   out.turns.resize(depth.size() * out.turn_count());
   out.votes = {};
+  out.part_votes = {};
 }
 
 struct ForestLabeller::Packed : PackedForest {};

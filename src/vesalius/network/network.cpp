@@ -94,6 +94,9 @@ void check(const Network& network, int parts) {
   const std::vector<NetworkPicture> pictures = pictures_of(network);
   check_head(pictures, "classes", network.classes_of, {.channels = parts + 1, .halvings = 1, .wide = true});
   check_head(pictures, "votes", network.person_of, {.channels = kPersonNumbers, .halvings = 2, .wide = true});
+  if (network.centres_of == -1) return;
+  check_head(pictures, "centres", network.centres_of,
+             {.channels = kCentreNumbers * parts, .halvings = 3, .wide = true});
 }
 
 }  // namespace vesalius

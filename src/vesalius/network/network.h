@@ -40,17 +40,23 @@ inline constexpr int kNetworkMultiple = 32;
 /// Unit of logits of classes, nats.
 inline constexpr float kLogitUnit = 1.F / 256.F;
 
-/// A network of convolutions that labels depth pictures, and knows of each pixel where its person's middle is.
+/// A network of convolutions that labels depth pictures, and knows of each pixel where its person's middle is. Some
+/// know of each pixel where all parts of its person are.
 struct Network {
   std::vector<Convolution> layers;
   int classes_of = -1;  ///< layer, at half the size: logits of the body's parts and, last, of the background; wide
   /// Layer, at a quarter of the size: the numbers of a PersonVote (labeller.h); wide.
   int person_of = -1;
+  /// Layer, at an eighth of the size: of each part the way (x, y, z in mm) from the pixel's point to the part's centre,
+  /// also of a hidden part; wide. -1: the network does not say.
+  int centres_of = -1;
   std::string made_from;  ///< how it was learned; free text
 };
 
 /// The numbers of a PersonVote (labeller.h).
 inline constexpr int kPersonNumbers = 5;
+/// Those of a way to a part's centre.
+inline constexpr int kCentreNumbers = 3;
 
 /// A picture inside a network; its width and height are those of the input, halved so many times.
 struct NetworkPicture {

@@ -31,6 +31,18 @@ Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
   return votes;
 }
 
+void write_part_votes(const WideImage& centres, const DepthImage& depth, PartVotes& votes) {
+  const auto part = [](int size) { return (size + kPartVoteStep - 1) / kPartVoteStep; };
+  votes = {.parts = centres.channels / kCentreNumbers, .ways_mm = std::move(votes.ways_mm)};
+  votes.ways_mm.clear();
+  if (centres.values.empty()) return;
+  votes.width = part(depth.width());
+  votes.height = part(depth.height());
+  for (int v = 0; v < votes.height; ++v) {
+    votes.ways_mm.insert(votes.ways_mm.end(), centres.at(0, v), centres.at(votes.width, v));
+  }
+}
+
 }  // namespace
 
 struct NetworkLabeller::Working {
@@ -85,6 +97,7 @@ void NetworkLabeller::label_into(const Frame& frame, float gate, Posteriors& out
     for (int v = begin; v < end; ++v) enlarge_row(depth, half, v, out);
   });
   out.votes = votes_of(memory.result.person, depth);
+  write_part_votes(memory.result.centres, depth, out.part_votes);
   working_->memory.give_back(std::move(memory));
   if (gate > 1.F) return;
   const BackgroundGate closed(depth, out, gate);

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -118,6 +119,7 @@ TEST(NetworkLabeller, GivesTheSameForAnyNumberOfThreads) {
     labeller.label_into(frame, 0.7F, got);
     EXPECT_EQ(got.sums, expected.sums);
     EXPECT_EQ(got.votes, expected.votes);
+    EXPECT_EQ(got.part_votes, expected.part_votes);
     EXPECT_EQ(got.settled, expected.settled);
   }
 }
@@ -178,6 +180,41 @@ TEST(NetworkLabeller, MarksWhereTheBackgroundIsCertainAsSettled) {
   EXPECT_TRUE(out.settled.empty()) << "with a gate above 1";
 }
 
+TEST(NetworkLabeller, LabelsTheSameWithoutCentres) {
+  Random random(10, 0);
+  const Network network = any_network(5);
+  const Frame frame = frame_of(random_depth(random, 75, 53));
+  const Posteriors with = NetworkLabeller(network, kParts).label(frame);
+  const Posteriors without = NetworkLabeller(test::without_centres(network), kParts).label(frame);
+  EXPECT_EQ(with.sums, without.sums);
+  EXPECT_EQ(with.votes, without.votes);
+  EXPECT_EQ(without.part_votes, PartVotes{});
+}
+
+TEST(NetworkLabeller, VotesForPartsAsTheNetworkSays) {
+  Random random(11, 0);
+  const Network network = any_network(6);
+  const Frame frame = frame_of(random_depth(random, 75, 53));
+  NetworkInput input;
+  fill_network_input(frame.depth, frame.camera.fx, input);
+  NetworkResult result;
+  NetworkRunner(network, kParts).run(input, result);
+  const NetworkLabeller labeller(network, kParts);
+  Posteriors out;
+  labeller.label_into(frame_of(random_depth(random, 200, 100)), 2.F, out);
+  labeller.label_into(frame, 2.F, out);  // in the memory of a larger one
+  EXPECT_EQ(out.part_votes.width, 10);
+  EXPECT_EQ(out.part_votes.height, 7);
+  ASSERT_EQ(out.part_votes.parts, kParts);
+  ASSERT_EQ(out.part_votes.ways_mm.size(), 10U * 7U * kParts * 3U);
+  for (int row = 0; row < 7; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      EXPECT_TRUE(std::equal(out.part_votes.at(column, row), out.part_votes.at(column, row) + 3 * kParts,
+                             result.centres.at(column, row)));
+    }
+  }
+}
+
 TEST(NetworkLabeller, RefusesPicturesThatAreTooLarge) {
   const NetworkLabeller labeller(any_network(4), kParts);
   EXPECT_THAT([&] { labeller.label(frame_of(DepthImage(16001, 1, 0))); }, ThrowsMessage<Error>(HasSubstr("16000")));
@@ -222,6 +259,7 @@ TEST(NetworkModel, LabelsOnDevices) {
     const Posteriors found = any.labeller->label(frame);
     EXPECT_EQ(found.sums, expected.sums);
     EXPECT_EQ(found.votes, expected.votes);
+    EXPECT_EQ(found.part_votes, expected.part_votes);
   }
   EXPECT_THAT(heard, ElementsAre("loom:1: lost; the processor goes on"));
   EXPECT_THAT([&] { on_device(network_model(), "card", devices); },

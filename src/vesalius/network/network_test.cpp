@@ -17,12 +17,14 @@ using testing::ThrowsMessage;
 
 constexpr int kParts = 3;
 
-/// 0: to 1/2; 1: to 1/4; 2: classes; 3: votes; 4: to 1/2 again; 5: adds 1/4 enlarged and 6 what layer 5 makes.
+/// 0: to 1/2; 1: to 1/4; 2: classes; 3: votes; 4: to 1/2 again; 5: adds 1/4 enlarged and 6 what layer 5 makes; 7: to
+/// 1/8; 8: centres.
 Network good_network() {
   Random random(1);
   Network network;
   network.classes_of = 2;
   network.person_of = 3;
+  network.centres_of = 8;
   const auto add = [&](const Convolution& c) { test::add_random(network, random, c); };
   add({.stride = 2, .inputs = kNetworkInputs, .outputs = 6});
   add({.input = 1, .stride = 2, .inputs = 6, .outputs = 5});
@@ -31,6 +33,8 @@ Network good_network() {
   add({.input = 0, .stride = 2, .inputs = kNetworkInputs, .outputs = 5});
   add({.input = 1, .inputs = 6, .outputs = 5, .added = 2, .added_scale = 1.F});
   add({.input = 6, .inputs = 5, .outputs = 5, .added = 6, .added_scale = 1.F});
+  add({.input = 2, .stride = 2, .inputs = 5, .outputs = 7});
+  add({.input = 8, .side = 1, .inputs = 7, .outputs = kCentreNumbers * kParts, .wide = true});
   return network;
 }
 
@@ -45,6 +49,8 @@ TEST(Network, IsGoodIfPicturesFit) {
   EXPECT_FALSE(pictures[2].wide);
   EXPECT_EQ(pictures[3].halvings, 1);
   EXPECT_TRUE(pictures[3].wide);
+  EXPECT_EQ(pictures[9], (NetworkPicture{.channels = 9, .halvings = 3, .wide = true}));
+  EXPECT_NO_THROW(check(test::without_centres(network), kParts));
 }
 
 struct Fault {
@@ -97,7 +103,7 @@ std::vector<Fault> faults() {
          n.layers[4].stride = 1, n.layers[5].input = 5, n.layers[5].inputs = 5, n.layers[5].weights.resize(225);
        }},
       {"classes come from layer -1, which is not there", [](Network& n) { n.classes_of = -1; }},
-      {"classes come from layer 7, which is not there", [](Network& n) { n.classes_of = 7; }},
+      {"classes come from layer 9, which is not there", [](Network& n) { n.classes_of = 9; }},
       {"classes are a narrow picture of 4 channels (halved 1 times), expected a wide",
        [](Network& n) { n.layers[2].wide = false; }},
       {"classes are a wide picture of 5 channels (halved 2 times), expected a wide picture of 4 channels (halved 1 "
@@ -105,6 +111,13 @@ std::vector<Fault> faults() {
        [](Network& n) { n.classes_of = 3; }},
       {"votes come from layer 1000, which is not there", [](Network& n) { n.person_of = 1000; }},
       {"votes are a wide picture of 4 channels", [](Network& n) { n.person_of = 2; }},
+      {"centres come from layer -2, which is not there", [](Network& n) { n.centres_of = -2; }},
+      {"centres come from layer 9, which is not there", [](Network& n) { n.centres_of = 9; }},
+      {"centres are a wide picture of 5 channels (halved 2 times), expected a wide picture of 9 channels (halved 3 "
+       "times)",
+       [](Network& n) { n.centres_of = 3; }},
+      {"centres are a narrow picture of 9 channels (halved 3 times), expected a wide",
+       [](Network& n) { n.layers[8].wide = false; }},
       {"257 layers, at most 256", [](Network& n) { n.layers.resize(257); }},
   };
 }

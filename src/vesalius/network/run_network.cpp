@@ -51,12 +51,17 @@ void check(const NetworkInput& input) {
 
 NetworkRunner::NetworkRunner(const Network& network, int parts)
     : classes_of_(static_cast<std::size_t>(network.classes_of) + 1),
-      person_of_(static_cast<std::size_t>(network.person_of) + 1) {
+      person_of_(static_cast<std::size_t>(network.person_of) + 1),
+      centres_of_(static_cast<std::size_t>(network.centres_of) + 1) {
   check(network, parts);
   pictures_ = pictures_of(network);
   for (const Convolution& c : network.layers) {
     layers_.push_back({c.input, c.added, static_cast<std::int64_t>(c.weights.size()), Convolver::make(c)});
   }
+}
+
+bool NetworkRunner::is_head(std::size_t picture) const {
+  return picture == classes_of_ || picture == person_of_ || (picture == centres_of_ && centres_of_ != 0);
 }
 
 void NetworkRunner::prepare(int width, int height, Workspace& space) const {
@@ -66,7 +71,7 @@ void NetworkRunner::prepare(int width, int height, Workspace& space) const {
   for (std::size_t n = 0; n < pictures_.size(); ++n) {
     space.views[n].width = width >> pictures_[n].halvings;
     space.views[n].height = height >> pictures_[n].halvings;
-    if (n == classes_of_ || n == person_of_) continue;
+    if (is_head(n)) continue;
     lay_out(pictures_[n], narrow_bytes(), n == 0 ? kNetworkZero : 0, space.views[n], space.memory[n]);
   }
 }
@@ -94,6 +99,11 @@ void NetworkRunner::run(const NetworkInput& input, NetworkResult& out) const {
   prepare(input.width, input.height, space);
   lay_out_head(classes_of_, space, out.classes);
   lay_out_head(person_of_, space, out.person);
+  if (centres_of_ == 0) {
+    out.centres = {};
+  } else {
+    lay_out_head(centres_of_, space, out.centres);
+  }
   copy_input(input, narrow_bytes(), space.views[0]);
   for (std::size_t n = 0; n < layers_.size(); ++n) run_layer(layers_[n], space.views, space.views[n + 1]);
   spaces_.give_back(std::move(space));

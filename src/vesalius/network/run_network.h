@@ -37,6 +37,7 @@ struct WideImage {
 struct NetworkResult {
   WideImage classes;  ///< half the size; unit kLogitUnit
   WideImage person;   ///< a quarter of the size
+  WideImage centres;  ///< an eighth of the size, in mm; empty if the network does not say
 };
 
 /// Runs a network on all allowed threads, by rows, one convolution after the other. The result is the same for any
@@ -65,6 +66,7 @@ class NetworkRunner {
     std::vector<std::vector<std::int16_t>> memory = {};
   };
 
+  bool is_head(std::size_t picture) const;
   int narrow_bytes() const { return layers_.front().convolver->narrow_bytes(); }
   void prepare(int width, int height, Workspace& space) const;
   void lay_out_head(std::size_t picture, Workspace& space, WideImage& head) const;
@@ -74,6 +76,7 @@ class NetworkRunner {
   std::vector<Layer> layers_;
   std::size_t classes_of_;  ///< picture
   std::size_t person_of_;   ///< picture
+  std::size_t centres_of_;  ///< picture; 0: none
   mutable Pool<Workspace> spaces_;
 };
 

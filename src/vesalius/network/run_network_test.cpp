@@ -74,11 +74,12 @@ NetworkResult run_plainly(const Network& network, const NetworkInput& input) {
     made.push_back(
         convolve_plainly(c, made[static_cast<std::size_t>(c.input)], added, c.input == 0 ? kNetworkZero : 0));
   }
-  const auto head = [&](int layer) {
+  const auto head = [&](int layer) -> WideImage {
+    if (layer < 0) return {};
     const Plain& p = made[static_cast<std::size_t>(layer) + 1];
-    return WideImage{p.width, p.height, p.channels, {p.values.begin(), p.values.end()}};
+    return {p.width, p.height, p.channels, {p.values.begin(), p.values.end()}};
   };
-  return {head(network.classes_of), head(network.person_of)};
+  return {head(network.classes_of), head(network.person_of), head(network.centres_of)};
 }
 
 void expect_same(const WideImage& got, const WideImage& expected, const std::string& what) {
@@ -91,6 +92,7 @@ void expect_same(const WideImage& got, const WideImage& expected, const std::str
 void expect_same(const NetworkResult& got, const NetworkResult& expected, const std::string& what) {
   expect_same(got.classes, expected.classes, "classes " + what);
   expect_same(got.person, expected.person, "votes " + what);
+  expect_same(got.centres, expected.centres, "centres " + what);
 }
 
 /// On every instruction set and for 1, 2 and 7 threads.
@@ -193,6 +195,24 @@ TEST(NetworkRunner, RunsSeveralAtOnceAndOtherSizesInTurn) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+}
+
+TEST(NetworkRunner, GivesNoCentresWhereTheNetworkHasNone) {
+  Random random(17);
+  const Network network = test::random_network(random, {{8, 12, 16, 20, 24}, {0, 1, 1, 1, 1}, {20, 16, 12, 8}}, 25);
+  const Network without = test::without_centres(network);
+  const NetworkInput input = test::random_input(random, 64, 32);
+  const NetworkRunner with(network, 25), none(without, 25);
+  NetworkResult result;
+  for (int turn = 0; turn < 2; ++turn) {
+    with.run(input, result);
+    EXPECT_EQ(result.centres.channels, 75);
+    EXPECT_EQ(result.centres.values.size(), 8U * 4U * 75U);
+    expect_same(result, run_plainly(network, input), "with centres");
+    none.run(input, result);
+    expect_same(result, run_plainly(without, input), "without centres");
+    expect_same(result.centres, {}, "none");
+  }
 }
 
 TEST(NetworkRunner, TakesNoOtherInputThanItSays) {

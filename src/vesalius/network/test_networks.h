@@ -34,6 +34,7 @@ struct NetworkShape {
 inline const NetworkShape kSmallShape = {{12, 24, 40, 64, 96}, {0, 1, 1, 2, 2}, {64, 40, 24, 16}};
 inline const NetworkShape kLargeShape = {{16, 32, 64, 112, 160}, {0, 1, 2, 3, 3}, {112, 64, 32, 16}};
 
+/// With all three heads.
 inline Network random_network(Random& random, const NetworkShape& shape, int parts) {
   Network network;
   const auto add = [&](const Convolution& c) { return add_random(network, random, c); };
@@ -49,7 +50,7 @@ inline Network random_network(Random& random, const NetworkShape& shape, int par
     for (int n = 0; n < shape.pairs[i]; ++n) at = add_pair(at, channels);
     levels.push_back(at);
   }
-  int quarter = 0, quarter_channels = 0;
+  int quarter = 0, quarter_channels = 0, eighth = 0, eighth_channels = 0;
   for (std::size_t j = 0; j < shape.decoder.size(); ++j) {
     const int to = shape.decoder[j];
     const std::size_t level = shape.encoder.size() - 2 - j;
@@ -62,15 +63,27 @@ inline Network random_network(Random& random, const NetworkShape& shape, int par
               .added_scale = 0.004F});
     at = add_pair(at, channels = to);
     if (level == 1) quarter = at, quarter_channels = channels;
+    if (level == 2) eighth = at, eighth_channels = channels;
   }
   const int classes = parts + 1;
   network.classes_of = add({.input = at, .side = 1, .inputs = channels, .outputs = classes, .wide = true}) - 1;
   network.person_of =
       add({.input = quarter, .side = 1, .inputs = quarter_channels, .outputs = kPersonNumbers, .wide = true}) - 1;
+  const int centres = kCentreNumbers * parts;
+  network.centres_of =
+      add({.input = eighth, .side = 1, .inputs = eighth_channels, .outputs = centres, .wide = true}) - 1;
   return network;
 }
 
-/// Random convolutions between the input and the heads: every one reads one of those before, and may add one.
+/// Takes away the last head.
+inline Network without_centres(Network network) {
+  network.layers.pop_back();
+  network.centres_of = -1;
+  return network;
+}
+
+/// Random convolutions between the input and the heads: every one reads one of those before, and may add one. Half
+/// of them have a head of centres.
 inline Network random_tangle(Random& random, int parts, int most_channels) {
   Network network;
   const auto any = [&](int count) { return int(random.below(static_cast<std::uint32_t>(count))); };
@@ -109,6 +122,9 @@ inline Network random_tangle(Random& random, int parts, int most_channels) {
   }
   network.classes_of = add({.input = last_half, .side = 3, .wide = true}, parts + 1) - 1;
   network.person_of = add({.input = last_quarter, .side = 1, .wide = true}, kPersonNumbers) - 1;
+  if (any(2) == 0) return network;
+  const int eighth = add({.input = last_quarter, .stride = 2}, 0);
+  network.centres_of = add({.input = eighth, .side = 1, .wide = true}, kCentreNumbers * parts) - 1;
   return network;
 }
 

@@ -20,12 +20,13 @@ except ImportError as error:
     sys.exit(77)
 
 from vesalius_network import nets, place, quantise, weights
-from vesalius_network.beginning import begin_from
+from vesalius_network.beginning import begin_from, state_of
 from vesalius_network.body import headings_of, middles_of, read_body
 from vesalius_network.damage import KINDS, Scene, damaged
 from vesalius_network.errors import InputError
 from vesalius_network.figures import figures_of
 from vesalius_network.inputs import inputs_of, without_blended
+from vesalius_network.model_file import read_network, read_sections
 from vesalius_network.nets import CONFIGS, Network, answer
 from vesalius_network.rounds import Rounds, read_pools
 from vesalius_network.shards import Dataset
@@ -304,20 +305,22 @@ class Quantising(unittest.TestCase):
     @torch.no_grad()
     def test_layers_say_what_the_network_says(self):
         network, x = self.network(), self.inputs()
-        layers, classes, person = quantise.layers_of(weights.floats(network.state_dict()))
+        layers, *heads = quantise.layers_of(weights.floats(network.state_dict()))
         results = quantise.run_layers(layers, x)
-        for got, expected in zip((results[classes], results[person]), network(x)):
-            self.assertLess(float((got - expected).abs().max()), 1e-3)
+        self.assertEqual(len(heads), 3)
+        for head, expected in zip(heads, network(x)):
+            self.assertLess(float((results[head] - expected).abs().max()), 1e-3)
 
     @torch.no_grad()
     def test_integers_are_near_real_numbers(self):
         x = self.inputs()
-        layers, classes, person = quantise.layers_of(weights.floats(self.network().state_dict()))
+        layers, *heads = quantise.layers_of(weights.floats(self.network().state_dict()))
         real = quantise.run_layers(layers, x)
         tops = quantise.Tops(layers)
         tops.add(real)
-        whole = quantise.run_convolutions(quantise.quantise(layers, person, tops), quantise.channels_of(x))
-        for layer, unit in ((classes, quantise.LOGIT_UNIT), (person, quantise.PERSON_UNITS[:, None, None])):
+        whole = quantise.run_convolutions(quantise.quantise(layers, tops), quantise.channels_of(x))
+        units = quantise.LOGIT_UNIT, quantise.PERSON_UNITS[:, None, None], quantise.CENTRE_UNIT
+        for layer, unit in zip(heads, units):
             off = (whole[layer + 1] * torch.as_tensor(unit) - real[layer]).abs().mean()
             spread = real[layer].std()
             self.assertLess(float(off / spread), 0.1)
@@ -341,21 +344,41 @@ class Quantising(unittest.TestCase):
         body = read_body((BODIES / "paper25.toml").read_text(), "")
         begun = Network(CONFIGS["small"], body.parts)
         self.assertIn("a test", begin_from(begun, "small", body, path("begin.model"), lambda: x))
-        for said, expected in zip(begun.eval()(x)[:2], network(x)):
+        for said, expected in zip(begun.eval()(x), network(x)):
             self.assertLess(float((said - expected).abs().mean() / expected.std()), 0.1)
         # A training takes away a batch's own statistics, which are those of these pictures.
         for learning, said in zip(begun.train()(x), begun.eval()(x)):
             self.assertLess(float((learning - said).abs().mean() / said.std()), 0.02)
 
+    def test_begins_with_a_model_without_centres(self):
+        network = self.network(25)
+        self.model(network, "all.model")
+        convolutions, *_, centres = read_network(read_sections(path("all.model"))["network"][1])
+        self.assertEqual(centres, len(convolutions) - 1)
+        _, state = state_of(convolutions, 25, "all")
+        _, older = state_of(convolutions[:-1], 25, "older")
+        self.assertEqual(set(state) - set(older), {"joints.weight", "joints.bias"})
+        self.assertTrue(torch.equal(state["inst.weight"], older["inst.weight"]))
+
+    def test_sections_come_back_with_and_without_centres(self):
+        self.model(self.network(25), "all.model")
+        section = read_sections(path("all.model"))["network"][1]
+        convolutions, classes, person, centres = read_network(section)
+        self.assertEqual(quantise.section_of(convolutions, classes, person, centres), section)
+        none = quantise.section_of(convolutions[:-1], classes, person, -1)
+        for content in (none, none[:-2]):  # of version 2, and of version 1
+            self.assertEqual(read_network(content)[1:], (classes, person, -1))
+
     def test_other_models_are_no_beginning(self):
         body = read_body((BODIES / "paper25.toml").read_text(), "")
-        Path(path("cut.model")).write_bytes((MODELS / "default.model").read_bytes()[:5000])
-        before, default = str(MODELS / "capsule.forest"), str(MODELS / "default.model")
-        subprocess.run([program, "convert", "-q", before, path("new.forest")], check=True)
+        forest, default = str(MODELS / "capsule.forest"), str(MODELS / "default.model")
+        content = Path(default).read_bytes()
+        Path(path("cut.model")).write_bytes(content[:5000])
+        Path(path("old.model")).write_bytes(content[:8] + b"\2" + content[9:])
         for model, expected in (
             (path("cut.model"), "cut.model: damaged at byte"),
-            (before, "capsule.forest: version 2"),
-            (path("new.forest"), "new.forest: expected a model with a network"),
+            (path("old.model"), "old.model: version 2"),
+            (forest, "capsule.forest: expected a model with a network"),
             (default, "config default, expected small"),
             (path("no.model"), "no.model: No such file"),
         ):

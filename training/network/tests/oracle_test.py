@@ -41,6 +41,7 @@ class Shown:
     channels: np.ndarray
     classes: np.ndarray
     person: np.ndarray
+    centres: np.ndarray
 
 
 def frames_of(program, out):
@@ -55,7 +56,7 @@ def frames_of(program, out):
 
     while file.at < len(file.data):
         (focal,) = file.numbers("f")
-        frames.append(Shown(focal, *(picture(kind) for kind in ("<u2", "u1", "<i2", "<i2"))))
+        frames.append(Shown(focal, *(picture(kind) for kind in ("<u2", "u1", "<i2", "<i2", "<i2"))))
     return frames
 
 
@@ -90,19 +91,19 @@ class Oracle(unittest.TestCase):
         """Returns how far the program's heads are off what other convolutions say of the first frame."""
         frame = self.frames[0]
         said = run(convolutions, self.heads, frame.channels)
-        return max(float(np.abs(a - b).max()) for a, b in zip(said, (frame.classes, frame.person)))
+        return max(float(np.abs(a - b).max()) for a, b in zip(said, (frame.classes, frame.person, frame.centres)))
 
     def test_frames_are_those_of_the_folder(self):
         self.assertEqual(len(self.frames), len(list((DATA / "rooms" / "depth").iterdir())))
 
     def test_a_network_that_is_read_is_the_one_that_was_written(self):
-        classes, person = (head - 1 for head in self.heads)
-        self.assertEqual(quantise.section_of(self.convolutions, classes, person), self.section)
+        self.assertEqual(quantise.section_of(self.convolutions, *(head - 1 for head in self.heads)), self.section)
 
-    def test_logits_and_votes_are_those_of_the_library(self):
+    def test_heads_are_those_of_the_library(self):
         said = [run(self.convolutions, self.heads, frame.channels) for frame in self.frames]
         self.assert_a_step_apart("logits", [(a[0], frame.classes) for a, frame in zip(said, self.frames)])
         self.assert_a_step_apart("votes", [(a[1], frame.person) for a, frame in zip(said, self.frames)])
+        self.assert_a_step_apart("centres", [(a[2], frame.centres) for a, frame in zip(said, self.frames)])
 
     def test_every_layer_of_the_tool_is_that_of_the_library(self):
         channels = self.frames[0].channels

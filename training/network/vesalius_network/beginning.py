@@ -10,7 +10,7 @@ from .body import read_body
 from .errors import InputError
 from .model_file import read_network, read_sections
 from .nets import CONFIGS, Network
-from .quantise import EPSILON, LOGIT_UNIT, PERSON_UNITS, STEPS, WIDE_STEPS, ZERO, layers_of
+from .quantise import EPSILON, HEAD_UNITS, STEPS, WIDE_STEPS, ZERO, layers_of
 from .weights import load
 
 # What 1 of a result stands for where nothing tells it. Later layers undo what this changes.
@@ -18,7 +18,6 @@ UNIT = 1 / STEPS
 # Kernels before a normalisation grow to about this while they learn, which makes the same rate a smaller step.
 GROWN = 0.13
 WEIGHTS = (".npz", ".pt")  # endings of their names; all else is a model
-HEADS = ("labels", "inst", "joints")
 
 
 def _alike(layer, convolution):
@@ -29,11 +28,11 @@ def _alike(layer, convolution):
 
 
 def _config_of(convolutions, parts, place):
-    """Returns the configuration whose network has these convolutions, and its layers."""
+    """Returns the configuration whose network has these convolutions, perhaps without the parts' centres, and its layers."""
     for config in CONFIGS:
-        layers, _, _ = layers_of(Network(CONFIGS[config], parts).state_dict())
-        if len(layers) == len(convolutions) and all(map(_alike, layers, convolutions)):
-            return config, layers
+        layers, *_, centres = layers_of(Network(CONFIGS[config], parts).state_dict())
+        if len(convolutions) in (centres, len(layers)) and all(map(_alike, layers, convolutions)):
+            return config, layers[: len(convolutions)]
     raise InputError(f"{place}: expected a network of config {' or '.join(CONFIGS)}")
 
 
@@ -41,7 +40,7 @@ def _unit_of(i, layers, convolutions, units):
     """Returns what 1 of a layer's result stands for, a number or one for each output."""
     layer = layers[i]
     if layer.wide:
-        return {"labels": LOGIT_UNIT, "inst": PERSON_UNITS}.get(layer.name, UNIT / WIDE_STEPS)
+        return HEAD_UNITS.get(layer.name, UNIT / WIDE_STEPS)
     of_another = layer.added is not None and not layers[layer.added].wide
     return units[layer.added] / convolutions[i].added_scale if of_another else UNIT
 
@@ -58,8 +57,8 @@ def _in_numbers(layer, convolution, before, unit):
 
 
 def state_of(convolutions, parts, place):
-    """Returns the configuration of a network of integers, and parameters of nets.Network that say nearly the same: all but
-    those of the ways to the parts' centres, which no model has. Normalisations change nothing (see `settle`)."""
+    """Returns the configuration of a network of integers, and parameters of nets.Network that say nearly the same: those of
+    the parts' centres only if it has them. Normalisations change nothing (see `settle`)."""
     config, layers = _config_of(convolutions, parts, place)
     units, state = [], {}
     for i, (layer, convolution) in enumerate(zip(layers, convolutions)):
@@ -74,7 +73,7 @@ def state_of(convolutions, parts, place):
             none = torch.zeros_like(bias)
             state |= {f"{norm}.weight": none + 1 / grown, f"{norm}.bias": none if shared else bias}
             state |= {f"{norm}.running_mean": none, f"{norm}.running_var": none + 1 - EPSILON}
-        if shared or layer.name in ("labels", "inst"):
+        if shared or layer.name in HEAD_UNITS:
             state[f"{layer.name}.bias"] = bias
     return config, state
 
@@ -119,7 +118,7 @@ def _read_model(path):
 
 def begin_from(network, config, body, path, some_inputs):
     """Takes over the weights of a file, or those of a model's network, for which `some_inputs()` [n, 4, h, w] are looked at.
-    The heads of one for another body begin anew. Returns a text about it."""
+    The heads of one for another body begin anew, and so do those that it has not. Returns a text about it."""
     path = Path(path)
     of_model = path.suffix not in WEIGHTS
     about, state = _read_model(path) if of_model else load(path)
@@ -127,10 +126,10 @@ def begin_from(network, config, body, path, some_inputs):
         raise InputError(f"{path}: a network of config {about['config']}, expected {config}")
     names = read_body(about["body"], path).names if about["body"] else body.names
     same = names == body.names and about["classes"] == body.classes
-    anew = () if same else HEADS
+    anew = () if same else tuple(HEAD_UNITS)
     state = {name: value for name, value in state.items() if not (anew and name.startswith(anew))}
     missing = network.load_state_dict(state, strict=False).missing_keys
-    anew += ("joints",) if of_model else ()
+    anew += ("joints",) if of_model and "joints.weight" not in state else ()
     needed = [name for name in missing if "num_batches" not in name and not (anew and name.startswith(anew))]
     if needed:
         raise InputError(f"{path}: expected the weights {needed[0]}")

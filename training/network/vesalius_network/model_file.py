@@ -27,7 +27,8 @@ def read_sections(path):
 
 
 def read_network(content, place="network"):
-    """Returns the convolutions of a section `network`, those of the classes and those of the person."""
+    """Returns the convolutions of a section `network`, and those of the classes, the person and the parts' centres: -1 where
+    there are none, as in a section of version 1."""
     file, convolutions = Bytes(content, place), []
     for _ in range(file.numbers("H")[0]):
         source, side, stride, inputs, outputs, added, added_scale, wide = file.numbers("HBBHHHfB")
@@ -36,4 +37,6 @@ def read_network(content, place="network"):
         weights = weights.reshape(outputs, side, side, inputs).transpose(0, 3, 1, 2)
         added = max(0, added - 1)
         convolutions.append(Convolution(source, stride, added, added_scale, bool(wide), scale, offset, weights))
-    return convolutions, *file.numbers("HH")
+    classes, person = file.numbers("HH")
+    centres = file.numbers("H")[0] - 1 if file.at < len(file.data) else -1
+    return convolutions, classes, person, centres

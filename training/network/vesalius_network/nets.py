@@ -46,8 +46,8 @@ class Residual(nn.Module):
 
 class Network(nn.Module):
     """Takes inputs [n, 4, h, w], h and w multiples of MULTIPLE. Returns logits of classes [n, parts + 1, h/2, w/2], of
-    the person [n, 5, h/4, w/4], and the ways to the centres of all parts in m [n, 3 parts, h/8, w/8], which are learnt
-    because they make the others better."""
+    the person [n, 5, h/4, w/4], and the ways to the centres of all parts in m, hidden ones too [n, 3 parts, h/8, w/8];
+    that these are learnt makes the others better as well."""
 
     def __init__(self, config, parts):
         super().__init__()
@@ -94,10 +94,10 @@ def answer(network, x):
 
 
 def multiply_adds(network, height=256, width=320):
-    """Returns how many the classes and the person of one picture take."""
+    """Returns how many one picture takes."""
     total, hooks = [], []
-    for name, module in network.named_modules():
-        if isinstance(module, nn.Conv2d) and name != "joints":
+    for module in network.modules():
+        if isinstance(module, nn.Conv2d):
             count = module.weight.numel()
             hooks.append(module.register_forward_hook(lambda m, i, out, n=count: total.append(n * out[0, 0].numel())))
     with torch.no_grad():

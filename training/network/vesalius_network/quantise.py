@@ -28,6 +28,8 @@ STEPS = 32  # kNetworkSteps
 FINER = 4  # kNearFiner
 LOGIT_UNIT = 1 / 256  # kLogitUnit
 PERSON_UNITS = np.array([1e-3, 1e-3, 1e-3, 1 / 8192, 1 / 8192])  # of a PersonVote, in m and 1
+CENTRE_UNIT = 1e-3  # of a way to a part's centre, in m
+HEAD_UNITS = {"labels": LOGIT_UNIT, "inst": PERSON_UNITS, "joints": CENTRE_UNIT}  # of the heads in nets.py
 WIDE_STEPS = 64  # of a wide result in one of the narrow result that it is added to
 SHARES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)  # of the largest value, as the most that a scale reaches
 MOST_FRAMES = 60  # of a dataset by which scales are chosen
@@ -99,7 +101,7 @@ class _Folder:
 
 
 def layers_of(state):
-    """Returns the layers of the parameters of nets.Network, the layer of the classes and that of the person."""
+    """Returns the layers of the parameters of nets.Network, and those of the classes, the person and the parts' centres."""
     folder = _Folder(state)
     levels = [folder.add("stem.0", -1, "stem.1", stride=2)]
     for i in range(4):
@@ -115,7 +117,8 @@ def layers_of(state):
     person = folder.add("inst", back[2], wide=True)
     folder.layers[person].weight = folder.layers[person].weight[:PERSON]
     folder.layers[person].bias = folder.layers[person].bias[:PERSON]
-    return folder.layers, classes, person
+    centres = folder.add("joints", back[1], wide=True)
+    return folder.layers, classes, person, centres
 
 
 def _enlarged(added, like):
@@ -166,19 +169,19 @@ def _of_channels(weight):
     return out
 
 
-def _units(layers, person, tops):
+def _units(layers, tops):
     """Returns what 1 of each layer's result stands for: [outputs] each."""
     units = [None if layer.wide else tops.of(i) / 255 for i, layer in enumerate(layers)]
     for i, layer in enumerate(layers):
         if layer.added is not None and layers[layer.added].wide:
             units[layer.added] = units[i] / WIDE_STEPS
-    heads = [PERSON_UNITS if i == person else LOGIT_UNIT for i in range(len(layers))]
+    heads = [HEAD_UNITS.get(layer.name) for layer in layers]
     return [np.broadcast_to(head if unit is None else unit, len(layer.bias)) for unit, head, layer in zip(units, heads, layers)]
 
 
-def quantise(layers, person, tops):
+def quantise(layers, tops):
     """Returns the layers as convolutions in integers."""
-    units, out = _units(layers, person, tops), []
+    units, out = _units(layers, tops), []
     for layer, unit in zip(layers, units):
         first = layer.source < 0
         weight = (_of_channels(layer.weight) if first else layer.weight).numpy()
@@ -222,8 +225,8 @@ def run_convolutions(convolutions, channels):
     return results
 
 
-def section_of(convolutions, classes, person):
-    """Returns the bytes of a model file's section `network` (docs/formats.md)."""
+def section_of(convolutions, classes, person, centres):
+    """Returns the bytes of a model file's section `network` (docs/formats.md). Without the parts' centres `centres` is -1."""
     out = [struct.pack("<H", len(convolutions))]
     for layer in convolutions:
         outputs, inputs, side, _ = layer.weights.shape
@@ -232,7 +235,7 @@ def section_of(convolutions, classes, person):
         out.append(struct.pack("<HBBHHHfB", *head))
         out += [numbers.astype("<f4").tobytes() for numbers in (layer.scale, layer.offset)]
         out.append(layer.weights.transpose(0, 2, 3, 1).tobytes())
-    out.append(struct.pack("<HH", classes, person))
+    out.append(struct.pack("<HHH", classes, person, centres + 1))
     return b"".join(out)
 
 
@@ -257,11 +260,11 @@ def write_network(weights, folders, out, most, note=""):
     """Writes the network of integers of a file of weights: a text that says how it was made, and its section. Scales are
     chosen by up to `most` frames of each dataset. Returns the number of convolutions."""
     about, state = load(weights)
-    layers, classes, person = layers_of(state)
-    convolutions = quantise(layers, person, tops_of(layers, folders, most))
+    layers, *heads = layers_of(state)
+    convolutions = quantise(layers, tops_of(layers, folders, most))
     made_from = "\n".join(text for text in (f'config = "{about["config"]}"', about["made_from"], note) if text)
     text = f"{made_from}\n".encode()
-    write_whole(out, struct.pack("<I", len(text)) + text + section_of(convolutions, classes, person))
+    write_whole(out, struct.pack("<I", len(text)) + text + section_of(convolutions, *heads))
     return len(convolutions)
 
 
