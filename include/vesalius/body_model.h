@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,13 +65,18 @@ struct PartDistribution {
     std::array<float, 3> mean_m{};
     std::array<std::vector<float>, 3> factors_m;  ///< [axis][factor]: what a standard deviation of the factor adds
     float residual_m = 0.F;                       ///< standard deviation along an axis that the factors leave
+    float depth_m = 0.F;  ///< by which the centre of its volume lies behind that of its surface, along the viewing ray
+  };
+  /// Logit of the probability that a predicted part lies within 10 cm of the truth: bias + slope * log(sigma in m).
+  struct Confidence {
+    float bias = 0.F;
+    float slope = 0.F;
   };
 
   int factors = 0;
   float noise_m = 0.F;  ///< standard deviation along an axis of an observed centre
-  /// Logit of the probability that a predicted part lies within 10 cm of the truth: bias + slope * log(sigma in m).
-  float confidence_bias = 0.F;
-  float confidence_slope = 0.F;
+  Confidence confidence;
+  std::optional<Confidence> voted_confidence;  ///< the same where pixels vote for parts; none: votes do not count
   std::vector<Part> parts;  ///< one for each part of the body, or none: the distribution is not known
 };
 

@@ -39,9 +39,16 @@ struct SkeletonPart {
   int behind = -1;  ///< as Joint::behind
 };
 
+/// Where the pixels of a person say that a part is, whether it is seen or hidden.
+struct VotedPart {
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the part's volume, metres, optical frame
+  float spread_m = 0.F;  ///< median distance of the votes to it, along the axis where that is largest
+};
+
 /// A kinematic tree over part proposals (section 6).
 struct Skeleton {
   std::vector<SkeletonPart> parts;  ///< one for each part of the body model
+  std::vector<VotedPart> voted;     ///< one for each part, or none: the labeller does not know
   int root = -1;                    ///< index of its root
   int found = 0;                    ///< number of observed parts
   float total_error = 0.F;          ///< sum of |normalised distance| over the parts

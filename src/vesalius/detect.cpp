@@ -32,6 +32,7 @@
 #include "vesalius/search_skeletons.h"
 #include "vesalius/trace.h"
 #include "vesalius/upright.h"
+#include "vesalius/vote_parts.h"
 
 namespace vesalius {
 namespace {
@@ -174,6 +175,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     if (group.heading.confidence > 0.F) candidate.yaw = group.heading;
   }
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
+  candidate.refined.voted = vote_parts(scene.labels.raw.part_votes, frame, candidate.grown);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
   candidate.points = std::move(person.points);

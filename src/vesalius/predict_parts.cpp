@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vesalius/base/logistic.h"
+#include "vesalius/vote_parts.h"
 
 namespace vesalius {
 namespace {
@@ -80,6 +81,28 @@ struct Gaussian {
   VectorXd residual2;
 };
 
+/// Where the visible surface of a part is, or would be.
+struct KnownPlace {
+  Index part;
+  Eigen::Vector3f at;
+  double noise2;  ///< variance along an axis
+};
+
+std::vector<KnownPlace> known_places(const PartDistribution& distribution, const std::vector<Eigen::Vector3f>& centres,
+                                     const std::vector<VotedPart>& voted) {
+  std::vector<KnownPlace> known;
+  for (std::size_t p = 0; p < centres.size(); ++p) {
+    if (centres[p].allFinite()) {
+      known.push_back({Index(p), centres[p], double(distribution.noise_m) * double(distribution.noise_m)});
+    } else if (!voted.empty()) {
+      const double sigma_m = voted_sigma_m(voted[p]);
+      const Eigen::Vector3f behind = distribution.parts[p].depth_m * voted[p].centre.normalized();
+      known.push_back({Index(p), voted[p].centre - behind, sigma_m * sigma_m});
+    }
+  }
+  return known;
+}
+
 }  // namespace
 
 Eigen::Matrix3d best_rotation(const Matrix3Xd& from, const Matrix3Xd& onto, const VectorXd& weights) {
@@ -94,25 +117,24 @@ Eigen::Matrix3d best_rotation(const Matrix3Xd& from, const Matrix3Xd& onto, cons
 }
 
 std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
-                                         const std::vector<Eigen::Vector3f>& centres) {
-  std::vector<Index> known;
-  for (std::size_t p = 0; p < centres.size(); ++p) {
-    if (centres[p].allFinite()) known.push_back(static_cast<Index>(p));
-  }
+                                         const std::vector<Eigen::Vector3f>& centres,
+                                         const std::vector<VotedPart>& voted) {
+  const std::vector<KnownPlace> known = known_places(distribution, centres, voted);
   const auto count = static_cast<Index>(known.size());
   if (count < kLeastKnownParts) return {};
   const Gaussian gaussian(distribution);
-  const double noise2 = double(distribution.noise_m) * double(distribution.noise_m);
   Matrix3Xd seen(3, count), expected(3, count);
   MatrixXd basis(3 * count, gaussian.basis.cols());
   VectorXd noise(count), stiffness(count), trust = VectorXd::Ones(count);
   for (Index i = 0; i < count; ++i) {
-    seen.col(i) = centres[known[i]].cast<double>();
-    expected.col(i) = gaussian.mean.col(known[i]);
-    basis.middleRows(3 * i, 3) = gaussian.basis.middleRows(3 * known[i], 3);
-    noise[i] = gaussian.residual2[known[i]] + noise2;
-    stiffness[i] = 1.0 / (gaussian.variance(known[i]) + noise2);
+    const auto& [part, place, noise2] = known[static_cast<std::size_t>(i)];
+    seen.col(i) = place.cast<double>();
+    expected.col(i) = gaussian.mean.col(part);
+    basis.middleRows(3 * i, 3) = gaussian.basis.middleRows(3 * part, 3);
+    noise[i] = gaussian.residual2[part] + noise2;
+    stiffness[i] = 1.0 / (gaussian.variance(part) + noise2);
   }
+  const auto part_of = [&](Index i) { return known[static_cast<std::size_t>(i)].part; };
   Eigen::Matrix3d turn;
   Eigen::Vector3d shift;  // a place in the camera's frame is turn^T * (place in the distribution's + shift)
   Matrix3Xd places;
@@ -125,7 +147,7 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
     VectorXd row_weights(3 * count), off(3 * count);
     for (Index i = 0; i < count; ++i) {
       row_weights.segment<3>(3 * i).setConstant(trust[i] / noise[i]);
-      off.segment<3>(3 * i) = turned.col(i) - gaussian.mean.col(known[i]);
+      off.segment<3>(3 * i) = turned.col(i) - gaussian.mean.col(part_of(i));
     }
     const MatrixXd weighted = row_weights.asDiagonal() * basis;
     squares.noalias() = basis.transpose() * weighted;
@@ -134,7 +156,7 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
     const VectorXd offsets = gaussian.basis * squares.llt().solve(products);
     places = gaussian.mean + Eigen::Map<const Matrix3Xd>(offsets.data(), 3, gaussian.mean.cols());
     for (Index i = 0; i < count; ++i) {
-      expected.col(i) = places.col(known[i]);
+      expected.col(i) = places.col(part_of(i));
       trust[i] = 1.0 / (1.0 + (turned.col(i) - expected.col(i)).squaredNorm() / (kHalfTrusted_m * kHalfTrusted_m));
     }
   }
@@ -149,9 +171,13 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
   return predicted;
 }
 
-float predicted_confidence(const PartDistribution& distribution, float sigma_m) {
-  const float logit = distribution.confidence_bias + distribution.confidence_slope * std::log(sigma_m);
-  return logistic(logit);
+float predicted_confidence(const PartDistribution::Confidence& confidence, float sigma_m) {
+  return logistic(confidence.bias + confidence.slope * std::log(sigma_m));
+}
+
+const std::vector<VotedPart>& counted_votes(const PartDistribution& distribution, const Skeleton& skeleton) {
+  static const std::vector<VotedPart> none;
+  return distribution.voted_confidence ? skeleton.voted : none;
 }
 
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
@@ -161,10 +187,13 @@ void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
     const bool known = part.state == State::observed;
     centres.push_back(known ? part.centre : Eigen::Vector3f::Constant(std::nanf("")));
   }
-  const std::vector<PredictedPart> predicted = predict_parts(body.distribution, centres);
+  const std::vector<VotedPart>& voted = counted_votes(body.distribution, skeleton);
+  const PartDistribution::Confidence& trust =
+      voted.empty() ? body.distribution.confidence : *body.distribution.voted_confidence;
+  const std::vector<PredictedPart> predicted = predict_parts(body.distribution, centres, voted);
   for (std::size_t p = 0; p < predicted.size(); ++p) {
     SkeletonPart& part = skeleton.parts[p];
-    const float confidence = predicted_confidence(body.distribution, predicted[p].sigma_m);
+    const float confidence = predicted_confidence(trust, predicted[p].sigma_m);
     if (part.state != State::none || confidence < kLeastPredictedConfidence) continue;
     part.state = State::predicted;
     part.centre = predicted[p].centre;

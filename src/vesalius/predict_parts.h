@@ -21,16 +21,22 @@ inline constexpr float kLeastPredictedConfidence = 0.2F;
 
 /// Returns the places of all parts, also the known ones, given those that are known (NaN = not known): the known ones
 /// are turned onto the distribution's mean, and the others' means and variances given them are those of a Gaussian.
-/// Known parts far from where the others expect them count less. Returns nothing for fewer than kLeastKnownParts.
+/// Where pixels voted for parts, `voted` has one for each: those for parts that are not known are known too, less well.
+/// What is known far from where the rest expects it counts less. Returns nothing if fewer than kLeastKnownParts are
+/// known.
 std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
-                                         const std::vector<Eigen::Vector3f>& centres);
+                                         const std::vector<Eigen::Vector3f>& centres,
+                                         const std::vector<VotedPart>& voted);
 
 /// Returns the probability that a predicted part lies within 10 cm of the truth.
-float predicted_confidence(const PartDistribution& distribution, float sigma_m);
+float predicted_confidence(const PartDistribution::Confidence& confidence, float sigma_m);
+
+/// Returns the votes that count for a skeleton: none if the distribution does not know how to take them.
+const std::vector<VotedPart>& counted_votes(const PartDistribution& distribution, const Skeleton& skeleton);
 
 /// Fills in the parts that were not observed. With a distribution in the body those get a place that reach
-/// kLeastPredictedConfidence; without, those between two observed ones, on the line between these and in the proportion
-/// of the link lengths, with half of the weaker neighbour's confidence. Their state is predicted.
+/// kLeastPredictedConfidence, votes included; without, those between two observed ones, on the line between these and
+/// in the proportion of the link lengths, with half of the weaker neighbour's confidence. Their state is predicted.
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
 
 /// Returns the rotation that turns `from` onto `onto` with the least squared error, with the columns' weights, both

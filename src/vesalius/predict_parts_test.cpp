@@ -61,8 +61,7 @@ PartDistribution cross() {
   PartDistribution d;
   d.factors = 1;
   d.noise_m = 0.01F;
-  d.confidence_bias = -4.F;
-  d.confidence_slope = -2.F;
+  d.confidence = {.bias = -4.F, .slope = -2.F};
   const std::array<std::array<float, 3>, 5> means{
       {{0, -0.5F, 0}, {0, 0.5F, 0}, {0.3F, 0, 0}, {-0.3F, 0, 0}, {0, 0, 0.4F}}};
   for (std::size_t p = 0; p < means.size(); ++p) {
@@ -91,7 +90,7 @@ TEST(PredictParts, FindsAPartOfABodyTurnedAnyWay) {
   std::vector<Vector3f> seen = placed(0.F);
   const Vector3f hidden = seen[2];
   seen[2] = kUnknown;
-  const std::vector<PredictedPart> predicted = predict_parts(cross(), seen);
+  const std::vector<PredictedPart> predicted = predict_parts(cross(), seen, {});
   ASSERT_EQ(predicted.size(), 5U);
   EXPECT_LT((predicted[2].centre - hidden).norm(), 0.01F);
   EXPECT_LT((predicted[0].centre - seen[0]).norm(), 0.01F);
@@ -101,20 +100,20 @@ TEST(PredictParts, FollowsWhatMovesWithIt) {
   std::vector<Vector3f> seen = placed(1.F);
   const Vector3f hidden = seen[4];
   seen[4] = kUnknown;
-  EXPECT_LT((predict_parts(cross(), seen)[4].centre - hidden).norm(), 0.08F);
+  EXPECT_LT((predict_parts(cross(), seen, {})[4].centre - hidden).norm(), 0.08F);
   EXPECT_GT((placed(0.F)[4] - hidden).norm(), 0.19F);
 }
 
 TEST(PredictParts, IsLessSureOfWhatMovesFreely) {
   std::vector<Vector3f> seen = placed(0.F);
   seen[2] = seen[4] = kUnknown;
-  const std::vector<PredictedPart> with = predict_parts(cross(), seen);
+  const std::vector<PredictedPart> with = predict_parts(cross(), seen, {});
   EXPECT_GT(with[4].sigma_m, with[2].sigma_m);
-  seen[3] = kUnknown;                                 // it moves with the fifth
-  EXPECT_TRUE(predict_parts(cross(), seen).empty());  // two are known
+  seen[3] = kUnknown;                                     // it moves with the fifth
+  EXPECT_TRUE(predict_parts(cross(), seen, {}).empty());  // two are known
   seen[2] = placed(0.F)[2];
-  EXPECT_GT(predict_parts(cross(), seen)[4].sigma_m, with[4].sigma_m);
-  EXPECT_GT(predicted_confidence(cross(), 0.05F), predicted_confidence(cross(), 0.1F));
+  EXPECT_GT(predict_parts(cross(), seen, {})[4].sigma_m, with[4].sigma_m);
+  EXPECT_GT(predicted_confidence(cross().confidence, 0.05F), predicted_confidence(cross().confidence, 0.1F));
 }
 
 TEST(PredictMissingParts, GivesThoseAPlaceThatAreSureEnough) {
@@ -134,10 +133,67 @@ TEST(PredictMissingParts, GivesThoseAPlaceThatAreSureEnough) {
   EXPECT_EQ(s.parts[2].state, State::predicted);
   EXPECT_LT((s.parts[2].centre - hidden).norm(), 0.02F);
   EXPECT_GT(s.parts[2].confidence, kLeastPredictedConfidence);
-  body.distribution.confidence_bias = -20.F;
+  body.distribution.confidence.bias = -20.F;
   s.parts[2] = {};
   predict_missing_parts(body, s);
   EXPECT_EQ(s.parts[2].state, State::none);
+}
+
+/// Returns votes for the places of the cross, whose parts lie 5 cm behind their surfaces.
+std::vector<VotedPart> votes_for(const std::vector<Vector3f>& places, float spread_m) {
+  std::vector<VotedPart> votes;
+  for (const Vector3f& place : places) votes.push_back({place + 0.05F * place.normalized(), spread_m});
+  return votes;
+}
+
+PartDistribution voted_cross() {
+  PartDistribution d = cross();
+  for (PartDistribution::Part& part : d.parts) part.depth_m = 0.05F;
+  d.voted_confidence = {.bias = -5.F, .slope = -2.F};
+  return d;
+}
+
+TEST(PredictParts, GoesWhereVotesSayThatAHiddenPartIs) {
+  const std::vector<Vector3f> places = placed(2.F);  // the fifth is 40 cm from where it mostly is
+  std::vector<Vector3f> seen = places;
+  seen[3] = seen[4] = kUnknown;  // none that moves with it is seen
+  const auto off = [&](const std::vector<VotedPart>& votes) {
+    return (predict_parts(voted_cross(), seen, votes)[4].centre - places[4]).norm();
+  };
+  EXPECT_GT(off({}), 0.3F);
+  EXPECT_LT(off(votes_for(places, 0.F)), 0.12F);
+  EXPECT_GT(off(votes_for(places, 0.3F)), off(votes_for(places, 0.05F)));  // votes that differ count less
+  const auto sigma = [&](float spread_m) {
+    return predict_parts(voted_cross(), seen, votes_for(places, spread_m))[4].sigma_m;
+  };
+  EXPECT_LT(sigma(0.F), sigma(0.1F));
+  EXPECT_LT(sigma(0.1F), predict_parts(voted_cross(), seen, {})[4].sigma_m);
+}
+
+TEST(PredictParts, BelievesWhatIsSeenMoreThanVotes) {
+  const std::vector<Vector3f> seen = placed(0.F);
+  std::vector<Vector3f> wrong = seen;
+  for (Vector3f& place : wrong) place.x() += 1.F;
+  const std::vector<PredictedPart> with = predict_parts(voted_cross(), seen, votes_for(wrong, 0.F));
+  for (std::size_t p = 0; p < seen.size(); ++p) EXPECT_LT((with[p].centre - seen[p]).norm(), 0.01F) << p;
+}
+
+TEST(PredictMissingParts, TakesVotesWhereTheBodySaysHowSureTheyAre) {
+  BodyModel body;
+  body.parts.resize(5);
+  body.distribution = voted_cross();
+  Skeleton s;
+  s.parts.resize(5);
+  s.voted = votes_for(placed(0.F), 0.01F);
+  Skeleton without = s;
+  predict_missing_parts(body, s);  // nothing is seen
+  for (std::size_t p = 0; p < 5; ++p) {
+    ASSERT_EQ(s.parts[p].state, State::predicted) << p;
+    EXPECT_LT((s.parts[p].centre - placed(0.F)[p]).norm(), 0.02F) << p;
+  }
+  body.distribution.voted_confidence.reset();
+  predict_missing_parts(body, without);
+  for (const SkeletonPart& part : without.parts) EXPECT_EQ(part.state, State::none);
 }
 
 TEST(BestRotation, UndoesATurnAndMakesNoMirrorImage) {

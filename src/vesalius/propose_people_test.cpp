@@ -154,6 +154,50 @@ TEST(ProposePeople, SomebodyOfWhomNoPartIsFoundHasABoxAndAMask) {
   EXPECT_GT(overlap(people[0].mask, truth, 0), 0.8);
 }
 
+/// A labeller that knows besides where each person's parts are, the hidden ones too.
+class KnowsAllParts : public test::VotingLabeller {
+ public:
+  KnowsAllParts(const LabelledFrame& truth, float noise_m) : VotingLabeller(truth, noise_m), truth_(truth) {}
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override {
+    VotingLabeller::label_into(frame, gate, out);
+    const auto part = [](int size) { return (size + kPartVoteStep - 1) / kPartVoteStep; };
+    out.part_votes = {.width = part(out.width), .height = part(out.height), .parts = out.classes - 1};
+    for (int row = 0; row < out.part_votes.height; ++row) {
+      for (int column = 0; column < out.part_votes.width; ++column) {
+        const int u = column * kPartVoteStep, v = row * kPartVoteStep, who = truth_.person(u, v);
+        for (int p = 0; p < out.part_votes.parts; ++p) {
+          Eigen::Vector3f way = Eigen::Vector3f::Zero();
+          if (who != kBackground) way = truth_.parts[who][p] - point_at(frame.camera, frame.depth, u, v);
+          for (int axis = 0; axis < 3; ++axis)
+            out.part_votes.ways_mm.push_back(std::int16_t(std::lround(1e3F * way[axis])));
+        }
+      }
+    }
+  }
+
+ private:
+  LabelledFrame truth_;
+};
+
+/// Returns how many parts of the only person found are given within 12 cm of the truth.
+template <class Labels>
+int count_parts_given(const LabelledFrame& truth) {
+  const Found found = find<Labels>(truth, 0.05F, judge_by("agree", 0.5F));
+  EXPECT_EQ(found.people.size(), 1U);
+  int given = 0;
+  for (int p = 0; p < paper_body().part_count(); ++p) {
+    const SkeletonPart& part = found.people.at(0).skeleton.parts[p];
+    given += part.state != State::none && (part.centre - truth.parts[0][p]).norm() < 0.12F ? 1 : 0;
+  }
+  return given;
+}
+
+TEST(ProposePeople, VotesPlacePartsThatAreNotSeen) {
+  const LabelledFrame truth = one_part("l_chest");
+  EXPECT_EQ(count_parts_given<test::VotingLabeller>(truth), 1);
+  EXPECT_GT(count_parts_given<KnowsAllParts>(truth), 15);
+}
+
 /// A room without people, with a box that labels take for parts of all kinds.
 LabelledFrame haunted_box() {
   CapsuleScene scene;

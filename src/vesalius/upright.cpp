@@ -41,6 +41,7 @@ void turn(Eigen::Vector3f& vector, int quarters) { vector = turned(vector, quart
 
 void turn(Skeleton& skeleton, int quarters) {
   for (SkeletonPart& part : skeleton.parts) turn(part.centre, quarters);
+  for (VotedPart& part : skeleton.voted) turn(part.centre, quarters);
 }
 
 void turn(std::vector<PersonPoint>& points, int quarters) {

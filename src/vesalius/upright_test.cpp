@@ -37,6 +37,7 @@ Person random_person(Random& rng) {
   person.box = bounding_box(person.mask);
   person.skeleton.parts.resize(1);
   person.skeleton.parts[0].centre = {1.F, 2.F, 3.F};
+  person.skeleton.voted = {{{1.F, 2.F, 3.F}, 0.1F}};
   person.joints = {{{State::observed, {0.5F, -1.F, 2.F}, 1.F}}};
   person.points = {{{3.F, 1.F, 2.F}, {}, {}}};
   return person;
@@ -95,6 +96,7 @@ TEST(Upright, TurningBackGivesWhatWasThere) {
     EXPECT_EQ(twice.people[0].box.u, found.people[0].box.u);
     EXPECT_EQ(twice.people[0].joints[0][0].position, found.people[0].joints[0][0].position);
     EXPECT_EQ(twice.people[0].skeleton.parts[0].centre, found.people[0].skeleton.parts[0].centre);
+    EXPECT_EQ(once.people[0].skeleton.voted[0].centre, once.people[0].skeleton.parts[0].centre);
     EXPECT_EQ(twice.people[0].points[0].at, found.people[0].points[0].at);
     EXPECT_EQ(twice.planes[0].normal, found.planes[0].normal);
     const PictureRegion region{{2, 1, 3, 2}, found.planes};

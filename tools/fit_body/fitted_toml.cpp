@@ -49,12 +49,16 @@ std::string parts_toml(const std::vector<KnownPerson>& people, const BodyModel& 
     for (const float value : values) text += fmt::format("{}{:.4f}", text.empty() ? "" : ", ", value);
     return text;
   };
-  std::string toml = fmt::format("[distribution]\nfactors = {}\nnoise = {}\nconfidence = [{:.3f}, {:.3f}]\n",
-                                 fitted.factors, fitted.noise_m, fitted.confidence_bias, fitted.confidence_slope);
+  const auto confidence = [](const char* key, const PartDistribution::Confidence& of) {
+    return fmt::format("{} = [{:.3f}, {:.3f}]\n", key, of.bias, of.slope);
+  };
+  std::string toml = fmt::format("[distribution]\nfactors = {}\nnoise = {}\n", fitted.factors, fitted.noise_m) +
+                     confidence("confidence", fitted.confidence);
+  if (fitted.voted_confidence) toml += confidence("voted_confidence", *fitted.voted_confidence);
   for (std::size_t p = 0; p < fitted.parts.size(); ++p) {
     const PartDistribution::Part& part = fitted.parts[p];
-    toml += fmt::format("\n[[distribution.part]]\nname = \"{}\"\nmean = [{}]\nresidual = {:.4f}\n", body.parts[p].name,
-                        numbers(part.mean_m), part.residual_m);
+    toml += fmt::format("\n[[distribution.part]]\nname = \"{}\"\nmean = [{}]\nresidual = {:.4f}\ndepth = {:.4f}\n",
+                        body.parts[p].name, numbers(part.mean_m), part.residual_m, part.depth_m);
     for (std::size_t axis = 0; axis < part.factors_m.size(); ++axis) {
       toml += fmt::format("{} = [{}]\n", "xyz"[axis], numbers(part.factors_m[axis]));
     }

@@ -105,7 +105,8 @@ Matrix3Xd align(std::vector<Matrix3Xd>& bodies) {
   return mean;
 }
 
-PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Matrix3Xd& mean) {
+PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Matrix3Xd& mean,
+                                 const std::vector<float>& depths_m) {
   const Index rows = 3 * mean.cols();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
   for (const Matrix3Xd& one : bodies) {
@@ -134,6 +135,7 @@ PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Mat
       }
     }
     part.residual_m = float(std::sqrt(std::max(0.0, rest / 3.0)));
+    part.depth_m = depths_m[static_cast<std::size_t>(p)];
   }
   return distribution;
 }
@@ -144,17 +146,19 @@ struct Outcome {
   bool right = false;
 };
 
+/// Returns what is predicted with the votes of the people who have some, or of all people without any.
 std::vector<Outcome> outcomes_of(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m,
-                                 const PartDistribution& distribution) {
+                                 const PartDistribution& distribution, bool voted) {
   std::vector<Outcome> outcomes;
   for (const KnownPerson& person : people) {
-    if (person.part_centres.empty()) continue;
+    if (person.part_centres.empty() || (voted && person.skeleton.voted.empty())) continue;
     const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
     Skeleton observed = person.skeleton;
     for (SkeletonPart& part : observed.parts) {
       if (part.state == State::predicted) part.state = State::none;
     }
-    const std::vector<PredictedPart> predicted = predict_parts(distribution, given_centres(observed));
+    if (!voted) observed.voted.clear();
+    const std::vector<PredictedPart> predicted = predict_parts(distribution, given_centres(observed), observed.voted);
     for (std::size_t p = 0; p < predicted.size(); ++p) {
       if (observed.parts[p].state != State::none || !surfaces[p].allFinite()) continue;
       const double error_m = double((predicted[p].centre - surfaces[p]).norm());
@@ -164,8 +168,8 @@ std::vector<Outcome> outcomes_of(const std::vector<KnownPerson>& people, const s
   return outcomes;
 }
 
-/// Fits the confidence by logistic regression (Newton's method).
-void fit_confidence(const std::vector<Outcome>& outcomes, PartDistribution& distribution) {
+/// Returns the confidence fitted by logistic regression (Newton's method).
+PartDistribution::Confidence fit_confidence(const std::vector<Outcome>& outcomes) {
   Eigen::Vector2d x = Eigen::Vector2d::Zero();
   for (int round = 0; round < 30; ++round) {
     Eigen::Matrix2d curvature = 1e-3 * Eigen::Matrix2d::Identity();  // keeps it finite where all or none are right
@@ -178,8 +182,7 @@ void fit_confidence(const std::vector<Outcome>& outcomes, PartDistribution& dist
     }
     x += curvature.ldlt().solve(slope);
   }
-  distribution.confidence_bias = float(x[0]);
-  distribution.confidence_slope = float(x[1]);
+  return {float(x[0]), float(x[1])};
 }
 
 }  // namespace
@@ -192,8 +195,10 @@ PartDistribution fit_distribution(const std::vector<KnownPerson>& people, const 
                             bodies.size() / 2, kLeastPeople));
   }
   const Matrix3Xd mean = align(bodies);
-  PartDistribution distribution = distribution_of(bodies, mean);
-  fit_confidence(outcomes_of(people, depths_m, distribution), distribution);
+  PartDistribution distribution = distribution_of(bodies, mean, depths_m);
+  distribution.confidence = fit_confidence(outcomes_of(people, depths_m, distribution, false));
+  const std::vector<Outcome> voted = outcomes_of(people, depths_m, distribution, true);
+  if (!voted.empty()) distribution.voted_confidence = fit_confidence(voted);
   return distribution;
 }
 

@@ -60,17 +60,57 @@ TEST(FitDistribution, PredictsPartsOfOtherPeopleWithAFairProbability) {
   const PartDistribution distribution = fit_distribution(people(400, 1), paper_body());
   double right = 0.0, expected = 0.0, count = 0.0;
   for (const KnownPerson& person : people(200, 2)) {
-    const auto predicted = predict_parts(distribution, given_centres(person.skeleton));
+    const auto predicted = predict_parts(distribution, given_centres(person.skeleton), {});
     for (std::size_t p = 0; p < predicted.size(); ++p) {
       if (person.skeleton.parts[p].state == State::observed) continue;
       const Vector3f surface = person.part_centres[p] - 0.05F * person.part_centres[p].normalized();
       right += (predicted[p].centre - surface).norm() < 0.1F ? 1.0 : 0.0;
-      expected += static_cast<double>(predicted_confidence(distribution, predicted[p].sigma_m));
+      expected += static_cast<double>(predicted_confidence(distribution.confidence, predicted[p].sigma_m));
       count += 1.0;
     }
   }
   EXPECT_GT(right / count, 0.7);
   EXPECT_NEAR(expected / count, right / count, 0.05);
+}
+
+TEST(FitDistribution, PredictsPartsWithVotesWithAFairProbability) {
+  Random random(6);
+  const auto with_votes = [&](int count, std::uint64_t seed) {
+    std::vector<KnownPerson> all = people(count, seed);
+    for (KnownPerson& person : all) {
+      for (SkeletonPart& part : person.skeleton.parts) {
+        if (random.uniform() < 0.7) part.state = State::none;  // too few to tell how the body is turned
+      }
+      for (const Vector3f& centre : person.part_centres) {
+        person.skeleton.voted.push_back({centre + scattered(random, 0.06), 0.02F});
+      }
+    }
+    return all;
+  };
+  const PartDistribution distribution = fit_distribution(with_votes(400, 1), paper_body());
+  ASSERT_TRUE(distribution.voted_confidence);
+  for (const PartDistribution::Part& part : distribution.parts) EXPECT_NEAR(part.depth_m, 0.05F, 0.02F);
+  double right = 0.0, expected = 0.0, count = 0.0, right_without = 0.0;
+  for (const KnownPerson& person : with_votes(200, 2)) {
+    const std::vector<Vector3f> seen = given_centres(person.skeleton);
+    const auto predicted = predict_parts(distribution, seen, person.skeleton.voted);
+    const auto without = predict_parts(distribution, seen, {});
+    for (std::size_t p = 0; p < predicted.size(); ++p) {
+      if (person.skeleton.parts[p].state == State::observed) continue;
+      const Vector3f surface = person.part_centres[p] - 0.05F * person.part_centres[p].normalized();
+      right += (predicted[p].centre - surface).norm() < 0.1F ? 1.0 : 0.0;
+      right_without += !without.empty() && (without[p].centre - surface).norm() < 0.1F ? 1.0 : 0.0;
+      expected += static_cast<double>(predicted_confidence(*distribution.voted_confidence, predicted[p].sigma_m));
+      count += 1.0;
+    }
+  }
+  EXPECT_GT(right / count, 0.7);
+  EXPECT_LT(right_without / count, 0.5);
+  EXPECT_NEAR(expected / count, right / count, 0.05);
+}
+
+TEST(FitDistribution, LeavesVotesOutWhereNobodyHasAny) {
+  EXPECT_FALSE(fit_distribution(people(150, 3), paper_body()).voted_confidence);
 }
 
 TEST(FitDistribution, IsTheSameForBothSides) {

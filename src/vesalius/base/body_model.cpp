@@ -205,13 +205,16 @@ std::vector<float> read_lengths(const Reader& reader, const toml::table& table, 
 void read_distribution(const Reader& reader, const toml::table& root, BodyModel& body) {
   if (!root.contains("distribution")) return;
   const toml::table& table = reader.table(reader.need(root, "distribution"), "distribution");
-  reader.expect_keys(table, {"factors", "noise", "confidence", "part"});
+  reader.expect_keys(table, {"factors", "noise", "confidence", "voted_confidence", "part"});
   PartDistribution& distribution = body.distribution;
   distribution.factors = int(reader.integer(reader.need(table, "factors"), "factors", 0, kMaxFactors));
   distribution.noise_m = reader.number(table, "noise", 1e-3, 1.0);
-  const std::vector<float> confidence = read_lengths(reader, table, "confidence", 2);
-  distribution.confidence_bias = confidence[0];
-  distribution.confidence_slope = confidence[1];
+  const auto read_confidence = [&](const char* key) {
+    const std::vector<float> read = read_lengths(reader, table, key, 2);
+    return PartDistribution::Confidence{read[0], read[1]};
+  };
+  distribution.confidence = read_confidence("confidence");
+  if (table.contains("voted_confidence")) distribution.voted_confidence = read_confidence("voted_confidence");
   const toml::array& parts = reader.array(table, "part");
   if (parts.size() != body.parts.size()) {
     reader.fail(parts, "part: expected the " + std::to_string(body.parts.size()) + " parts of the body, found " +
@@ -219,13 +222,14 @@ void read_distribution(const Reader& reader, const toml::table& root, BodyModel&
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const toml::table& entry = reader.table(*parts.get(p), "part");
-    reader.expect_keys(entry, {"name", "mean", "residual", "x", "y", "z"});
+    reader.expect_keys(entry, {"name", "mean", "residual", "depth", "x", "y", "z"});
     if (reader.name(entry, "name") != body.parts[p].name) {
       reader.fail(entry, "name: expected " + in_quotes(body.parts[p].name) + ", parts in the body's order");
     }
     PartDistribution::Part& part = distribution.parts.emplace_back();
     std::ranges::copy(read_lengths(reader, entry, "mean", 3), part.mean_m.begin());
     part.residual_m = reader.number(entry, "residual", 0.0, 10.0);
+    if (entry.contains("depth")) part.depth_m = reader.number(entry, "depth", -1.0, 1.0);
     constexpr std::array kAxes{"x", "y", "z"};
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       part.factors_m[axis] = read_lengths(reader, entry, kAxes[axis], distribution.factors);

@@ -137,13 +137,26 @@ TEST(BodyModel, HasTheDistributionOfItsParts) {
   const PartDistribution d = parse_body_model(std::string(kSmall) + kDistribution, "b").distribution;
   EXPECT_EQ(d.factors, 2);
   EXPECT_FLOAT_EQ(d.noise_m, 0.04F);
-  EXPECT_FLOAT_EQ(d.confidence_bias, -3.5F);
-  EXPECT_FLOAT_EQ(d.confidence_slope, -1.5F);
+  EXPECT_FLOAT_EQ(d.confidence.bias, -3.5F);
+  EXPECT_FLOAT_EQ(d.confidence.slope, -1.5F);
+  EXPECT_FALSE(d.voted_confidence);
   ASSERT_EQ(d.parts.size(), 3U);
   EXPECT_FLOAT_EQ(d.parts[0].mean_m[2], 0.3F);
   EXPECT_FLOAT_EQ(d.parts[0].residual_m, 0.05F);
   EXPECT_EQ(d.parts[0].factors_m[1], (std::vector<float>{3.F, 4.F}));
   EXPECT_TRUE(parse_body_model(kSmall, "b").distribution.parts.empty());
+}
+
+TEST(BodyModel, HasWhatVotesForPartsNeed) {
+  std::string text = std::string(kSmall) + kDistribution;
+  text.insert(text.find("confidence"), "voted_confidence = [-8.5, -2.5]\n");
+  text.insert(text.find("residual = 0.05"), "depth = 0.07\n");
+  const PartDistribution d = parse_body_model(text, "b").distribution;
+  ASSERT_TRUE(d.voted_confidence);
+  EXPECT_FLOAT_EQ(d.voted_confidence->bias, -8.5F);
+  EXPECT_FLOAT_EQ(d.voted_confidence->slope, -2.5F);
+  EXPECT_FLOAT_EQ(d.parts[0].depth_m, 0.07F);
+  EXPECT_FLOAT_EQ(d.parts[1].depth_m, 0.F);
 }
 
 TEST(BodyModel, RefusesADistributionOfOtherParts) {
