@@ -195,6 +195,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
       data.centres[p] = person.skeleton.parts[p].centre.cast<double>();
     }
   }
+  data.votes = person.skeleton.voted;
   data.expected = expected;
   if (data.expected.shape.size() == 0) forget_shape(data.expected);
   if (!data.expected.pose) {

@@ -143,6 +143,41 @@ TEST(FitBody, HiddenLimbsArePredictedAndLessCertain) {
   EXPECT_LT(foot.confidence, hand.confidence);
 }
 
+/// Returns votes for where the parts truly are, those of the legs to some centimetres and others to a metre.
+std::vector<VotedPart> votes_for_legs(const test::SeenBody& seen) {
+  const PartSurface surface(paper_body(), builtin_flesh());
+  std::vector<VotedPart> votes(surface.of_part.size(), {seen.truth[0].head.cast<float>(), 1.F});
+  for (std::size_t part = 0; part < votes.size(); ++part) {
+    const PartSurface::Stretch& stretch = surface.of_part[part].front();
+    const std::string& bone = builtin_flesh().bones[stretch.bone].name;
+    if (!bone.ends_with("thigh") && !bone.ends_with("shin") && !bone.ends_with("foot")) continue;
+    const PlacedBone& placed = seen.truth[stretch.bone];
+    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
+    votes[part] = {(placed.head + along * (placed.tail - placed.head)).cast<float>(), 0.02F};
+  }
+  return votes;
+}
+
+TEST(FitBody, VotesPlaceLimbsThatAreHidden) {
+  BodyState astride = test::usual_state(0.4);
+  test::turn(astride, "l_thigh", {0.0, 0.0, 0.6});
+  test::turn(astride, "r_thigh", {0.0, 0.0, -0.6});
+  test::SeenBody seen = test::see(astride);
+  hide_from_thighs_down(seen);
+  const auto error_m = [&] {
+    const std::optional<BodyFit> fit = BodyFitter(paper_body()).fit(seen.frame, seen.person);
+    double sum = 0.0;
+    for (const char* name : {"l_shin", "r_shin", "l_foot", "r_foot"}) {
+      const int bone = builtin_flesh().find_bone(name);
+      sum += (fit->body.bones[bone].head.cast<double>() - seen.truth[bone].head).norm();
+    }
+    return sum / 4.0;
+  };
+  EXPECT_GT(error_m(), 0.18) << "nothing else tells how somebody stands behind the box";
+  seen.person.skeleton.voted = votes_for_legs(seen);
+  EXPECT_LT(error_m(), 0.1);
+}
+
 TEST(FitBody, HasNoLegsInTheGround) {
   const FleshModel& flesh = builtin_flesh();
   const BodyFitter fitter(paper_body());

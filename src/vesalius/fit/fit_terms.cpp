@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vesalius/vote_parts.h"
+
 namespace vesalius {
 namespace {
 
@@ -301,36 +303,59 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
   }
 }
 
+/// The middle of a part's flesh, optical frame.
+struct FitTerms::PartPlace {
+  int bone;
+  Vector3d middle;
+  double half_m;  ///< the smaller half width of the flesh there
+};
+
+FitTerms::PartPlace FitTerms::place_of(int part, const std::vector<PlacedBone>& placed) const {
+  constexpr double kAside = 0.5;  // a half's middle, in half widths from the middle line
+  // The longest of its stretches stands for the part.
+  const auto length = [&](const PartSurface::Stretch& s) {
+    return std::abs((std::min(s.to, 1.0) - std::max(s.from, 0.0)) *
+                    placed[s.bone].numbers[3 + flesh_.bones[s.bone].axis]);
+  };
+  const PartSurface::Stretch& stretch = *std::ranges::max_element(surface_.of_part[part], {}, length);
+  const FleshBone& bone = flesh_.bones[stretch.bone];
+  const PlacedBone& at = placed[stretch.bone];
+  const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
+  const CrossSection section = section_at(at, bone, along);
+  Vector3d point = middle_at(at, bone, section, along);
+  if (bone.axis != 0) point.x() += kAside * stretch.side * section.half[0];
+  return {stretch.bone, at.head + at.global * point, std::min(section.half[0], section.half[1])};
+}
+
+/// Pulls a point of a bone to where it should be; what is far off counts less.
+void FitTerms::add_pull(int bone, const Vector3d& at, const Vector3d& to, double sigma_m,
+                        NormalEquations& equations) const {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
+  const Vector3d off = at - to;
+  const double information = 1.0 / (sigma_m * sigma_m);
+  const double weight = information * robust_weight(information * off.squaredNorm(), kLimit, 1.0, equations);
+  for (int axis = 0; axis < 3; ++axis) {
+    equations.add_point(bone, at, Vector3d::Unit(axis), none, off[axis], weight);
+  }
+}
+
 void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                            NormalEquations& equations) const {
-  constexpr double kAside = 0.5;  // a half's visible middle, in half widths from the middle line
-  const double sigma = double(kCentre_m);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (std::size_t p = 0; p < data.centres.size(); ++p) {
     if (!data.centres[p]) continue;
     const int part = mirrored ? body_.parts[p].mirror : int(p);
     if (part < 0 || surface_.of_part[part].empty()) continue;
-    // The longest of its stretches stands for the part.
-    const auto length = [&](const PartSurface::Stretch& s) {
-      return (std::min(s.to, 1.0) - std::max(s.from, 0.0)) * placed[s.bone].numbers[3 + flesh_.bones[s.bone].axis];
-    };
-    const auto& stretches = surface_.of_part[part];
-    const PartSurface::Stretch& stretch =
-        *std::ranges::max_element(stretches, {}, [&](const PartSurface::Stretch& s) { return std::abs(length(s)); });
-    const FleshBone& bone = flesh_.bones[stretch.bone];
-    const PlacedBone& at = placed[stretch.bone];
-    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
-    const CrossSection section = section_at(at, bone, along);
-    Vector3d point = middle_at(at, bone, section, along);
-    if (bone.axis != 0) point.x() += kAside * stretch.side * section.half[0];
-    const Vector3d surface =
-        at.head + at.global * point - 0.7 * std::min(section.half[0], section.half[1]) * data.centres[p]->normalized();
-    const Vector3d off = surface - *data.centres[p];
-    const double squared = off.squaredNorm() / (sigma * sigma);
-    const double weight = robust_weight(squared, kLimit, 1.0, equations);
-    for (int axis = 0; axis < 3; ++axis) {
-      equations.add_point(stretch.bone, surface, Vector3d::Unit(axis), none, off[axis], weight / (sigma * sigma));
-    }
+    const PartPlace place = place_of(part, placed);
+    const Vector3d surface = place.middle - 0.7 * place.half_m * data.centres[p]->normalized();
+    add_pull(place.bone, surface, *data.centres[p], double(kCentre_m), equations);
+  }
+}
+
+void FitTerms::add_votes(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const {
+  for (std::size_t p = 0; p < data.votes.size(); ++p) {
+    if (surface_.of_part[p].empty()) continue;
+    const PartPlace place = place_of(int(p), placed);
+    add_pull(place.bone, place.middle, data.votes[p].centre.cast<double>(), voted_sigma_m(data.votes[p]), equations);
   }
 }
 
@@ -462,6 +487,7 @@ void FitTerms::evaluate_points(const FitData& data, const BodyState& state, cons
   placed = place_bones(flesh_, state);
   equations.clear(placed);
   add_points(data, placed, assigned, equations);
+  add_votes(data, placed, equations);
   add_outline(data, placed, equations);
   if (data.expected.ground) add_ground(*data.expected.ground, placed, equations);
   add_priors(data.expected, state, equations);

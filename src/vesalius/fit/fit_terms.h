@@ -54,6 +54,7 @@ struct FitData {
   std::vector<PersonPoint> points;
   std::optional<Silhouette> silhouette;
   std::vector<std::optional<Eigen::Vector3d>> centres;  ///< [part] mean of its visible surface
+  std::vector<VotedPart> votes;                         ///< [part], seen or hidden; empty: nobody votes
   ExpectedBody expected;
 };
 
@@ -98,12 +99,17 @@ class FitTerms {
 
  private:
   struct Hit;
+  struct PartPlace;
+  PartPlace place_of(int part, const std::vector<PlacedBone>& placed) const;
   Hit hit(const PlacedBone& bone, int index, const PartSurface::Stretch& stretch, const Eigen::Vector3d& at) const;
   void add_points(const FitData& data, const std::vector<PlacedBone>& placed, const std::vector<Assigned>& assigned,
                   NormalEquations& equations) const;
   void add_priors(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
+  void add_pull(int bone, const Eigen::Vector3d& at, const Eigen::Vector3d& to, double sigma_m,
+                NormalEquations& equations) const;
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
+  void add_votes(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_ground(const Ground& ground, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_poses(const BodyState& state, NormalEquations& equations) const;
