@@ -166,22 +166,13 @@ TEST(KnownPeople, AMaskGainsWhatIsNearAndLosesWhatIsNeitherNearNorBody) {
   const Posteriors posteriors = everywhere(0.45);
   Prior prior{{somebody(0.F, 2.F)}};
   const KnownPeople known(frame, kNothingFlat, posteriors, 1, prior);
-  Mask mask(kWidth, kHeight, 0);
-  mask(5, 5) = 1;
-  known.correct(0, true, mask);
-  EXPECT_EQ(mask(5, 5), 0);
-  EXPECT_EQ(mask(39, kHeight / 2), 1);
-}
-
-TEST(KnownPeople, AMaskOfSomebodyWhoIsElsewhereLosesNothing) {
-  const Frame frame = wall(2000);
-  const Posteriors posteriors = everywhere(0.45);
-  Prior prior{{somebody(0.F, 2.F)}};
-  const KnownPeople known(frame, kNothingFlat, posteriors, 1, prior);
-  Mask mask(kWidth, kHeight, 0);
-  mask(5, 5) = 1;
-  known.correct(0, false, mask);
-  EXPECT_EQ(mask(5, 5), 1);
+  for (const bool at_flesh : {true, false}) {
+    Mask mask(kWidth, kHeight, 0);
+    mask(5, 5) = 1;
+    known.correct(0, at_flesh, mask);
+    EXPECT_EQ(mask(5, 5), at_flesh ? 0 : 1) << "who is elsewhere loses nothing";
+    EXPECT_EQ(mask(39, kHeight / 2), 1);
+  }
 }
 
 TEST(KnownPeople, AMaskShowsWhomItOverlapsMost) {
