@@ -175,7 +175,8 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     if (group.heading.confidence > 0.F) candidate.yaw = group.heading;
   }
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
-  candidate.refined.voted = vote_parts(scene.labels.raw.part_votes, frame, candidate.grown);
+  const PartVotes& votes = scene.labels.raw.part_votes;
+  if (votes.parts == method.body.part_count()) candidate.refined.voted = vote_parts(votes, frame, candidate.grown);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
   candidate.points = std::move(person.points);

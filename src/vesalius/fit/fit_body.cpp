@@ -195,7 +195,8 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
       data.centres[p] = person.skeleton.parts[p].centre.cast<double>();
     }
   }
-  data.votes = person.skeleton.voted;
+  const auto is_finite = [](const VotedPart& part) { return part.centre.allFinite() && std::isfinite(part.spread_m); };
+  if (std::ranges::all_of(person.skeleton.voted, is_finite)) data.votes = person.skeleton.voted;
   data.expected = expected;
   if (data.expected.shape.size() == 0) forget_shape(data.expected);
   if (!data.expected.pose) {

@@ -27,6 +27,7 @@ void carry(TrackedPerson& person, const Eigen::Isometry3f& to_from, float ahead_
   person.position = to * person.position;
   person.velocity = to.linear() * person.velocity;
   for (SkeletonPart& part : person.person.skeleton.parts) part.centre = to * part.centre;
+  for (VotedPart& part : person.person.skeleton.voted) part.centre = to * part.centre;
   carry(person.person.joints, to);
   carry(person.smoothed, to);
   if (person.body) carry(*person.body, to);

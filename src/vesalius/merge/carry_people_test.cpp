@@ -29,8 +29,10 @@ TEST(CarryPeople, KeepsLengthsAndComesBack) {
   TrackedPerson person =
       test::seen_walker({{0.F, 0.F, 3.F}, {1.F, 0.F, 0.F}}, 0.F, 1, Isometry3f::Identity(), 0.F, random);
   person.body = two_bones();
+  person.person.skeleton.voted = {{Vector3f(0.1F, -0.2F, 3.F), 0.05F}};
   TrackedPerson carried = person;
   carry(carried, there, 0.F);
+  EXPECT_LT((carried.person.skeleton.voted[0].centre - there * Vector3f(0.1F, -0.2F, 3.F)).norm(), 1e-6F);
   EXPECT_LT((carried.position - there * person.position).norm(), 1e-6F);
   EXPECT_NEAR(carried.velocity.norm(), 1.F, 1e-6F);
   const FittedBone& root = carried.body->bones[0];

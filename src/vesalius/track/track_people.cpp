@@ -53,10 +53,12 @@ bool comes_before(const Sighting& a, const Sighting& b) {
 }
 
 void check(const Person& person, const BodyModel& body) {
-  if (person.skeleton.parts.size() == body.parts.size() && person.joints.size() == body.joint_sets.size()) return;
-  throw Error("track: a person has " + std::to_string(person.skeleton.parts.size()) + " parts and " +
+  const std::size_t parts = person.skeleton.parts.size(), voted = person.skeleton.voted.size();
+  const bool fits = parts == body.parts.size() && (voted == 0 || voted == parts);
+  if (fits && person.joints.size() == body.joint_sets.size()) return;
+  throw Error("track: a person has " + std::to_string(parts) + " parts, " + std::to_string(voted) + " voted ones and " +
               std::to_string(person.joints.size()) + " joint sets, expected the body's " +
-              std::to_string(body.parts.size()) + " and " + std::to_string(body.joint_sets.size()));
+              std::to_string(body.parts.size()) + ", as many or none, and " + std::to_string(body.joint_sets.size()));
 }
 
 /// Moves what was found of somebody as the prediction moved.
@@ -68,6 +70,7 @@ void move(Person& person, const Eigen::Vector3f& by, float faded) {
     part.centre += by;
     part.confidence *= faded;
   }
+  for (VotedPart& part : person.skeleton.voted) part.centre += by;
   person.skeleton.found = 0;
   for (std::vector<Joint>& joints : person.joints) {
     for (Joint& joint : joints) {

@@ -573,6 +573,10 @@ TEST(TrackPeople, RefusesPeopleOfAnotherBodyAndOptionsOutOfRange) {
   stage.people[0].skeleton.parts.pop_back();
   EXPECT_THAT([&] { tracker.update(stage.frame, {stage.people}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("24 parts")));
+  stage.people[0].skeleton.parts.emplace_back();
+  stage.people[0].skeleton.voted.resize(3);
+  EXPECT_THAT([&] { tracker.update(stage.frame, {stage.people}); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("3 voted ones")));
   TrackOptions options;
   options.rate = 0.F;
   EXPECT_THROW(PeopleTracker(paper_body(), options), UsageError);
