@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "vesalius/base/pixel_grid.h"
 
@@ -37,7 +38,7 @@ class Poll {
     for (int axis = 0; axis < 3; ++axis) {
       values_.clear();
       for (std::size_t i = 0; i < count; ++i) {
-        const Voter& voter = voters_[nearest_[i].voter];
+        const Voter& voter = voters_[nearest_[i].second];
         values_.push_back(voter.point[axis] + 1e-3F * float(voter.ways_mm[3 * part + std::size_t(axis)]));
       }
       voted.centre[axis] = upper_median(values_);
@@ -48,12 +49,6 @@ class Poll {
   }
 
  private:
-  struct Distance {
-    std::int64_t squared_mm;
-    std::size_t voter;
-    friend auto operator<=>(const Distance&, const Distance&) = default;
-  };
-
   /// Puts the voters that are nearest to a part first, and returns how many count.
   std::size_t choose_nearest(std::size_t part) {
     for (std::size_t i = 0; i < voters_.size(); ++i) {
@@ -70,7 +65,7 @@ class Poll {
   }
 
   const std::vector<Voter>& voters_;
-  std::vector<Distance> nearest_;
+  std::vector<std::pair<std::int64_t, std::size_t>> nearest_;  ///< squared mm, voter
   std::vector<float> values_;
 };
 

@@ -244,7 +244,7 @@ SurfaceRule::Side read_side(const Reader& reader, const toml::table& table) {
   if (side == "both") return SurfaceRule::Side::both;
   if (side == "left") return SurfaceRule::Side::left;
   if (side == "right") return SurfaceRule::Side::right;
-  reader.fail(*node, "side " + in_quotes(side) + ": expected \"both\", \"left\" or \"right\"");
+  reader.fail(*node, "side " + in_quotes(side) + R"(: expected "both", "left" or "right")");
 }
 
 void read_surface(const Reader& reader, const toml::table& root, BodyModel& body) {
@@ -262,7 +262,7 @@ void read_surface(const Reader& reader, const toml::table& root, BodyModel& body
     rule.bone = reader.name(table, "bone");
     rule.from = reader.number(table, "from", 0.0, 1.0);
     rule.to = reader.number(table, "to", 0.0, 1.0);
-    if (rule.to <= rule.from) reader.fail(table, "surface: expected \"to\" to be larger than \"from\"");
+    if (rule.to <= rule.from) reader.fail(table, R"(surface: expected "to" to be larger than "from")");
     rule.side = read_side(reader, table);
     rule.line = int(table.source().begin.line);
     body.surface.push_back(std::move(rule));

@@ -34,12 +34,7 @@ struct BodyFitter::Solution {
 };
 
 BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& flesh, const BodyTrust& trust)
-    : body_(std::move(body)),
-      options_(options),
-      flesh_(flesh),
-      trust_(trust),
-      terms_(flesh_, body_, options_),
-      can_fit_(false) {
+    : body_(std::move(body)), options_(options), flesh_(flesh), trust_(trust), terms_(flesh_, body_, options_) {
   RangeCheck check;
   visit_options("fit.", options_, check);
   can_fit_ = std::ranges::any_of(terms_.surface().of_part, [](const auto& stretches) { return !stretches.empty(); });
@@ -134,7 +129,7 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
     Vector3d point = placed.head + along * (placed.tail - placed.head);
     if (bone.axis != 0) point += 0.5 * stretch.side * placed.numbers[8 + 4] * placed.global.col(0);
     model.push_back(point);
-    seen.push_back(*data.centres[p] + 0.08 * data.centres[p]->normalized());
+    seen.emplace_back(*data.centres[p] + 0.08 * data.centres[p]->normalized());
     const bool is_trunk = bone.mirror == stretch.bone || bone.parent == 0;
     weights.push_back(is_trunk ? 1.0 : 0.1);
   }

@@ -72,7 +72,7 @@ class BodyFitter {
   const FleshModel& flesh_;
   const BodyTrust& trust_;
   FitTerms terms_;
-  bool can_fit_;
+  bool can_fit_ = false;
 };
 
 }  // namespace vesalius

@@ -36,7 +36,7 @@ CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double 
   CrossSection section{};
   int below = 0;
   while (below < kLast - 1 && along > double(bone.stations[below + 1])) ++below;
-  const double from = double(bone.stations[below]), to = double(bone.stations[below + 1]);
+  const auto from = double(bone.stations[below]), to = double(bone.stations[below + 1]);
   const double above = std::clamp((along - from) / (to - from), 0.0, 1.0);
   section.share[below] = 1.0 - above;
   section.share[below + 1] = above;
@@ -184,7 +184,7 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
   const Vector3d q = placed.global.transpose() * (at - placed.head);
   const double length = placed.numbers[3 + bone.axis];
   const double along = q[bone.axis] / length;
-  const double first = double(bone.stations.front()), last = double(bone.stations.back());
+  const auto first = double(bone.stations.front()), last = double(bone.stations.back());
   const double inside = std::clamp(along, first, last);
   hit.section = section_at(placed, bone, inside);
   const std::array<int, 2> across = axes_across(bone.axis);
@@ -363,8 +363,8 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
                            NormalEquations& equations) const {
   constexpr std::array kPlaces{0.15, 0.5, 0.85};
   if (!data.silhouette) return;
-  const double weight = double(options_.outline_weight);
-  const double outline = double(options_.outline_m), free = double(options_.free_m);
+  const auto weight = double(options_.outline_weight);
+  const auto outline = double(options_.outline_m), free = double(options_.free_m);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const FleshBone& bone = flesh_.bones[b];
@@ -442,7 +442,7 @@ void FitTerms::add_poses(const BodyState& state, NormalEquations& equations) con
 }
 
 void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) const {
-  const double sigma = double(kBeyond_rad);
+  const auto sigma = double(kBeyond_rad);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const FleshBone& bone = flesh_.bones[b];
     if (bone.parent < 0) continue;
