@@ -54,11 +54,11 @@ bool comes_before(const Sighting& a, const Sighting& b) {
 
 void check(const Person& person, const BodyModel& body) {
   const std::size_t parts = person.skeleton.parts.size(), voted = person.skeleton.voted.size();
-  const bool fits = parts == body.parts.size() && (voted == 0 || voted == parts);
-  if (fits && person.joints.size() == body.joint_sets.size()) return;
+  const std::size_t sets = person.joints.size(), of_body = body.parts.size();
+  if (parts == of_body && (voted == 0 || voted == parts) && sets == body.joint_sets.size()) return;
   throw Error("track: a person has " + std::to_string(parts) + " parts, " + std::to_string(voted) + " voted ones and " +
-              std::to_string(person.joints.size()) + " joint sets, expected the body's " +
-              std::to_string(body.parts.size()) + ", as many or none, and " + std::to_string(body.joint_sets.size()));
+              std::to_string(sets) + " joint sets, expected the body's " + std::to_string(of_body) +
+              ", as many or none, and " + std::to_string(body.joint_sets.size()));
 }
 
 /// Moves what was found of somebody as the prediction moved.
