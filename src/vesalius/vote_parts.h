@@ -17,8 +17,8 @@ inline constexpr int kLeastPartVotes = 4;
 /// nothing. Returns nothing for fewer than kLeastPartVotes of them, or where the labeller does not know.
 std::vector<VotedPart> vote_parts(const PartVotes& votes, const Frame& frame, const Mask& person);
 
-/// Returns the standard deviation along each axis with which a voted centre counts, metres. It is larger than the mean
-/// error of such a centre: votes for the parts of a limb are wrong together.
+/// Returns the standard deviation along each axis with which a voted centre counts, metres: about its error on rendered
+/// people.
 double voted_sigma_m(const VotedPart& part);
 
 }  // namespace vesalius
