@@ -230,19 +230,17 @@ bool has_enough_parts(const Candidate& candidate, const RefineOptions& options) 
 }
 
 /// Returns the known people whom no candidate that would pass anyway covers or shows elsewhere.
-std::vector<int> missed_people(const Method& method, const Prior& prior, const std::vector<Candidate>& candidates,
-                               const std::vector<bool>& elsewhere) {
+std::vector<int> missed_people(const Method& method, const Prior& prior, const std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
   std::vector<int> missed;
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
     const Mask& mask = prior.people[i].mask;
     if (mask.empty()) continue;
-    bool found = false;
-    for (std::size_t c = 0; c < candidates.size() && !found; ++c) {
-      const Candidate& candidate = candidates[c];
-      found = candidate.score >= options.min_score && has_enough_parts(candidate, options) &&
-              ((elsewhere[c] && candidate.known == int(i)) || shared_pixels(candidate.grown, mask) >= kSurelyKnown);
-    }
+    const bool found = std::ranges::any_of(candidates, [&](const Candidate& candidate) {
+      if (candidate.score < options.min_score || !has_enough_parts(candidate, options)) return false;
+      const bool moved = candidate.elsewhere && candidate.known == int(i);
+      return moved || shared_pixels(candidate.grown, mask) >= kSurelyKnown;
+    });
     if (!found) missed.push_back(int(i));
   }
   return missed;
@@ -250,8 +248,8 @@ std::vector<int> missed_people(const Method& method, const Prior& prior, const s
 
 /// Adds a refined candidate for each of the known people whom the others miss.
 void add_known(const Method& method, const Frame& frame, const Scene& scene, const Looks& looks, const Prior& prior,
-               const std::vector<bool>& elsewhere, std::vector<Candidate>& candidates) {
-  const std::vector<int> missed = missed_people(method, prior, candidates, elsewhere);
+               std::vector<Candidate>& candidates) {
+  const std::vector<int> missed = missed_people(method, prior, candidates);
   if (missed.empty()) return;
   // The background's posterior does not hold back known people.
   const PersonGrower grower(frame, scene.labels.flat, method.body, method.options.grow, looks);
@@ -379,11 +377,9 @@ long pixels_of(const Mask& mask) {
 }
 
 /// Takes candidates for known people of whom little is where they are expected, and votes for the same middle as the
-/// candidate does: they moved otherwise, and what is there is a piece of them. Returns for each candidate whether it is
-/// one of these.
-std::vector<bool> show_by_votes(const Prior& prior, const VoteGroups& groups, std::vector<Candidate>& candidates) {
+/// candidate does: they moved otherwise, and what is there is a piece of them.
+void show_by_votes(const Prior& prior, const VoteGroups& groups, std::vector<Candidate>& candidates) {
   constexpr long kWhole = 4;  // times the pixels of the piece
-  std::vector<bool> moved(candidates.size(), false);
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
     const Prior::KnownPerson& known = prior.people[i];
     const auto is_shown = [&](const Candidate& candidate) { return candidate.known == int(i); };
@@ -395,9 +391,8 @@ std::vector<bool> show_by_votes(const Prior& prior, const VoteGroups& groups, st
     });
     if (whole == candidates.end()) continue;
     whole->known = int(i);
-    moved[whole - candidates.begin()] = true;
+    whole->elsewhere = true;
   }
-  return moved;
 }
 
 /// Runs the method on one frame of any size. Planes that are `known` are not searched for.
@@ -413,12 +408,12 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
     looks = look_at(frame, method.appearance.get());
   std::vector<Candidate> candidates = propose_people(frame, scene, looks, method.body, method.options);
   parallel_for(int(candidates.size()), [&](int i) { candidates[i].known = known.shown_by(candidates[i].grown); });
-  const std::vector<bool> elsewhere = show_by_votes(prior, scene.groups, candidates);
+  show_by_votes(prior, scene.groups, candidates);
   parallel_for(int(candidates.size()),
-               [&](int i) { known.correct(candidates[i].known, !elsewhere[i], candidates[i].grown); });
+               [&](int i) { known.correct(candidates[i].known, !candidates[i].elsewhere, candidates[i].grown); });
   clock.lap(Stage::grow);
   refine_all(method, frame, scene, look_around(method, frame, scene, candidates), prior, candidates);
-  add_known(method, frame, scene, looks, prior, elsewhere, candidates);
+  add_known(method, frame, scene, looks, prior, candidates);
   clock.lap(Stage::second_pass);
   std::ranges::stable_sort(candidates,
                            [](const Candidate& a, const Candidate& b) { return a.certainty > b.certainty; });

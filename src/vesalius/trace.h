@@ -27,9 +27,10 @@ struct Trace {
   /// A grown and refined group of votes or rough skeleton. A rough skeleton has two candidates if growing against its
   /// rivals gives another mask than growing alone.
   struct Candidate {
-    Skeleton rough;  ///< one of `rough`, or the one found in a group or in the mask of a known person
-    int group = -1;  ///< index of the group of votes (VoteGroups) from which it comes or that it shows, or -1
-    int known = -1;  ///< index in Prior::people of the person for whom it is taken, or -1
+    Skeleton rough;          ///< one of `rough`, or the one found in a group or in the mask of a known person
+    int group = -1;          ///< index of the group of votes (VoteGroups) from which it comes or that it shows, or -1
+    int known = -1;          ///< index in Prior::people of the person for whom it is taken, or -1
+    bool elsewhere = false;  ///< whether that person was expected elsewhere, and is known by votes
     Mask grown;
     LabelImage labels;  ///< pass 2, smoothed
     std::vector<PersonPoint> points;

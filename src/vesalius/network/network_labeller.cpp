@@ -19,9 +19,11 @@ namespace {
 /// Posteriors::whole: what smoothing sums over its window fits 16 bits.
 constexpr int kNetworkWhole = 2040;
 
+/// Returns how many of `size` pixels vote, the first included.
+int voters(int size, int step) { return (size + step - 1) / step; }
+
 Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
-  const auto part = [](int size) { return (size + kVoteStep - 1) / kVoteStep; };
-  Image<PersonVote> votes(part(depth.width()), part(depth.height()));
+  Image<PersonVote> votes(voters(depth.width(), kVoteStep), voters(depth.height(), kVoteStep));
   for (int v = 0; v < votes.height(); ++v) {
     for (int u = 0; u < votes.width(); ++u) {
       const std::int16_t* of = person.at(u, v);
@@ -32,12 +34,11 @@ Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
 }
 
 void write_part_votes(const WideImage& centres, const DepthImage& depth, PartVotes& votes) {
-  const auto part = [](int size) { return (size + kPartVoteStep - 1) / kPartVoteStep; };
   votes = {.parts = centres.channels / kCentreNumbers, .ways_mm = std::move(votes.ways_mm)};
   votes.ways_mm.clear();
   if (centres.values.empty()) return;
-  votes.width = part(depth.width());
-  votes.height = part(depth.height());
+  votes.width = voters(depth.width(), kPartVoteStep);
+  votes.height = voters(depth.height(), kPartVoteStep);
   for (int v = 0; v < votes.height; ++v) {
     votes.ways_mm.insert(votes.ways_mm.end(), centres.at(0, v), centres.at(votes.width, v));
   }
