@@ -96,8 +96,7 @@ std::vector<KnownPlace> known_places(const PartDistribution& distribution, const
       known.push_back({Index(p), centres[p], double(distribution.noise_m) * double(distribution.noise_m)});
     } else if (!voted.empty()) {
       const double sigma_m = voted_sigma_m(voted[p]);
-      const Eigen::Vector3f behind = distribution.parts[p].depth_m * voted[p].centre.normalized();
-      known.push_back({Index(p), voted[p].centre - behind, sigma_m * sigma_m});
+      known.push_back({Index(p), surface_of(voted[p].centre, distribution.parts[p].depth_m), sigma_m * sigma_m});
     }
   }
   return known;

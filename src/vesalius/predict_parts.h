@@ -28,6 +28,11 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
                                          const std::vector<Eigen::Vector3f>& centres,
                                          const std::vector<VotedPart>& voted);
 
+/// Returns where the surface of a part is whose volume has this centre, `depth_m` before it on the viewing ray.
+inline Eigen::Vector3f surface_of(const Eigen::Vector3f& centre, float depth_m) {
+  return centre - depth_m * centre.normalized();
+}
+
 /// Returns the probability that a predicted part lies within 10 cm of the truth.
 float predicted_confidence(const PartDistribution::Confidence& confidence, float sigma_m);
 

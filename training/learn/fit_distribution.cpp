@@ -53,8 +53,9 @@ std::vector<float> depths_of(const std::vector<KnownPerson>& people, const BodyM
 /// Returns where a person's parts would be observed if nothing hid them.
 std::vector<Vector3f> surfaces_of(const KnownPerson& person, const std::vector<float>& depths_m) {
   std::vector<Vector3f> surfaces;
+  surfaces.reserve(person.part_centres.size());
   for (std::size_t p = 0; p < person.part_centres.size(); ++p) {
-    surfaces.emplace_back(person.part_centres[p] - depths_m[p] * person.part_centres[p].normalized());
+    surfaces.push_back(surface_of(person.part_centres[p], depths_m[p]));
   }
   return surfaces;
 }
