@@ -122,15 +122,11 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
     if (!data.centres[p]) continue;
     const int part = mirrored ? body_.parts[p].mirror : int(p);
     if (part < 0 || terms_.surface().of_part[part].empty()) continue;
-    const PartSurface::Stretch& stretch = terms_.surface().of_part[part].front();
-    const FleshBone& bone = flesh_.bones[stretch.bone];
-    const PlacedBone& placed = rest[stretch.bone];
-    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
-    Vector3d point = placed.head + along * (placed.tail - placed.head);
-    if (bone.axis != 0) point += 0.5 * stretch.side * placed.numbers[8 + 4] * placed.global.col(0);
-    model.push_back(point);
+    const int index = terms_.surface().middle_of_part[part].bone;
+    const FleshBone& bone = flesh_.bones[index];
+    model.push_back(terms_.place_of(part, rest).middle);
     seen.emplace_back(*data.centres[p] + 0.08 * data.centres[p]->normalized());
-    const bool is_trunk = bone.mirror == stretch.bone || bone.parent == 0;
+    const bool is_trunk = bone.mirror == index || bone.parent == 0;
     weights.push_back(is_trunk ? 1.0 : 0.1);
   }
   if (int(model.size()) < kLeastCentres) return std::nullopt;

@@ -145,15 +145,13 @@ TEST(FitBody, HiddenLimbsArePredictedAndLessCertain) {
 
 /// Returns votes for where the parts truly are, those of the legs to some centimetres and others to a metre.
 std::vector<VotedPart> votes_for_legs(const test::SeenBody& seen) {
-  const PartSurface surface(paper_body(), builtin_flesh());
-  std::vector<VotedPart> votes(surface.of_part.size(), {seen.truth[0].head.cast<float>(), 1.F});
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  std::vector<VotedPart> votes(paper_body().parts.size(), {seen.truth[0].head.cast<float>(), 1.F});
   for (std::size_t part = 0; part < votes.size(); ++part) {
-    const PartSurface::Stretch& stretch = surface.of_part[part].front();
-    const std::string& bone = builtin_flesh().bones[stretch.bone].name;
+    const std::string& bone = builtin_flesh().bones[terms.surface().middle_of_part[part].bone].name;
     if (!bone.ends_with("thigh") && !bone.ends_with("shin") && !bone.ends_with("foot")) continue;
-    const PlacedBone& placed = seen.truth[stretch.bone];
-    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
-    votes[part] = {(placed.head + along * (placed.tail - placed.head)).cast<float>(), 0.02F};
+    votes[part] = {terms.place_of(int(part), seen.truth).middle.cast<float>(), 0.02F};
   }
   return votes;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "vesalius/vote_parts.h"
 
@@ -27,13 +28,15 @@ constexpr double kBelowLimit = 6.0;  // the same of flesh below the ground, wher
 
 /// The flesh of a bone at a place along it.
 struct CrossSection {
-  std::array<double, 2> centre, half;
-  std::array<double, FleshBone::kStations> share;  ///< share of each station
+  std::array<double, 2> centre{}, half{};
+  std::array<double, FleshBone::kStations> share{};  ///< share of each station
 };
 
-CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double along) {
+/// Returns this for numbers of the bone: those of somebody's shape, or what a shape adds.
+template <class Number>
+CrossSection section_of(const FleshBone& bone, const std::array<Number, FleshBone::kNumbers>& numbers, double along) {
   constexpr int kLast = FleshBone::kStations - 1;
-  CrossSection section{};
+  CrossSection section;
   int below = 0;
   while (below < kLast - 1 && along > double(bone.stations[below + 1])) ++below;
   const auto from = double(bone.stations[below]), to = double(bone.stations[below + 1]);
@@ -42,21 +45,63 @@ CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double 
   section.share[below + 1] = above;
   for (int i = 0; i < 2; ++i) {
     for (int s = 0; s < FleshBone::kStations; ++s) {
-      section.centre[i] += section.share[s] * placed.numbers[6 + 4 * s + i];
-      section.half[i] += section.share[s] * placed.numbers[6 + 4 * s + 2 + i];
+      section.centre[i] += section.share[s] * double(numbers[6 + 4 * s + i]);
+      section.half[i] += section.share[s] * double(numbers[6 + 4 * s + 2 + i]);
     }
-    section.half[i] = std::max(section.half[i], kLeastHalf_m);
   }
   return section;
 }
 
-/// Returns the point in the middle of the flesh at a place along the bone, in the bone's frame.
-Vector3d middle_at(const PlacedBone& placed, const FleshBone& bone, const CrossSection& section, double along) {
-  const std::array<int, 2> across = axes_across(bone.axis);
+CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double along) {
+  CrossSection section = section_of(bone, placed.numbers, along);
+  for (double& half : section.half) half = std::max(half, kLeastHalf_m);
+  return section;
+}
+
+/// Returns a point of a cross-section of these numbers in the bone's frame, `across` half widths from its middle.
+template <class Number>
+Vector3d point_of(const FleshBone& bone, const std::array<Number, FleshBone::kNumbers>& numbers,
+                  const CrossSection& section, double along, const std::array<double, 2>& across = {}) {
+  const std::array<int, 2> axes = axes_across(bone.axis);
   Vector3d point;
-  point[bone.axis] = along * placed.numbers[3 + bone.axis];
-  for (int i = 0; i < 2; ++i) point[across[i]] = section.centre[i];
+  point[bone.axis] = along * double(numbers[3 + bone.axis]);
+  for (int i = 0; i < 2; ++i) point[axes[i]] = section.centre[i] + across[i] * section.half[i];
   return point;
+}
+
+/// Returns the middle of the surface of a part's stretches.
+PartSurface::Middle middle_of(const std::vector<PartSurface::Stretch>& stretches, const FleshModel& flesh,
+                              const std::vector<PlacedBone>& rest) {
+  constexpr int kRings = 16;
+  PartSurface::Middle middle;
+  Vector3d sum = Vector3d::Zero();
+  double area = 0.0, longest = 0.0;
+  for (const PartSurface::Stretch& stretch : stretches) {
+    const FleshBone& bone = flesh.bones[stretch.bone];
+    const PlacedBone& placed = rest[stretch.bone];
+    const double from = std::max(stretch.from, double(bone.stations.front()));
+    const double length = std::min(stretch.to, double(bone.stations.back())) - from;
+    const double length_m = length * std::abs(placed.numbers[3 + bone.axis]);
+    if (length_m > longest) middle.bone = stretch.bone;
+    longest = std::max(longest, length_m);
+    const double aside = stretch.side * 2.0 / std::numbers::pi;  // the mean of half a circle
+    for (int ring = 0; ring < kRings; ++ring) {
+      const double along = from + length * (ring + 0.5) / kRings;
+      const CrossSection section = section_at(placed, bone, along);
+      const double around = (section.half[0] + section.half[1]) * (stretch.side != 0 ? 0.5 : 1.0);
+      sum += length_m * around * (placed.head + point_of(bone, placed.numbers, section, along, {aside, 0.0}));
+      area += length_m * around;
+    }
+  }
+  if (middle.bone < 0) return middle;
+  const FleshBone& bone = flesh.bones[middle.bone];
+  const PlacedBone& placed = rest[middle.bone];
+  const Vector3d point = sum / area - placed.head;
+  middle.along = point[bone.axis] / placed.numbers[3 + bone.axis];
+  const CrossSection section = section_at(placed, bone, middle.along);
+  const std::array<int, 2> axes = axes_across(bone.axis);
+  for (int i = 0; i < 2; ++i) middle.across[i] = (point[axes[i]] - section.centre[i]) / section.half[i];
+  return middle;
 }
 
 /// The lowest place of a bone's flesh.
@@ -135,6 +180,10 @@ PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_pa
     stretch.side = rule.side == SurfaceRule::Side::left ? 1 : rule.side == SurfaceRule::Side::right ? -1 : 0;
     of_part[rule.part].push_back(stretch);
   }
+  const BodyState rest{Vector3d::Zero(), std::vector(flesh.bones.size(), Eigen::Quaterniond::Identity()),
+                       Eigen::VectorXd::Zero(flesh.shapes)};
+  const std::vector<PlacedBone> placed = place_bones(flesh, rest);
+  for (const auto& stretches : of_part) middle_of_part.push_back(middle_of(stretches, flesh, placed));
 }
 
 /// How a point lies to the flesh of a stretch of a bone.
@@ -212,7 +261,7 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
     hit.normal = placed.global * normal;
     hit.ray = at.normalized();
   }
-  const Vector3d middle = placed.head + placed.global * middle_at(placed, bone, hit.section, inside);
+  const Vector3d middle = placed.head + placed.global * point_of(bone, placed.numbers, hit.section, inside);
   hit.behind = std::max(0.0, hit.ray.dot(at - middle));
   if (along < stretch.from) {
     hit.end = stretch.from;
@@ -303,51 +352,40 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
   }
 }
 
-/// The middle of a part's flesh, optical frame.
-struct FitTerms::PartPlace {
-  int bone;
-  Vector3d middle;
-  double half_m;  ///< the smaller half width of the flesh there
-};
-
 FitTerms::PartPlace FitTerms::place_of(int part, const std::vector<PlacedBone>& placed) const {
-  constexpr double kAside = 0.5;  // a half's middle, in half widths from the middle line
-  // The longest of its stretches stands for the part.
-  const auto length = [&](const PartSurface::Stretch& s) {
-    return std::abs((std::min(s.to, 1.0) - std::max(s.from, 0.0)) *
-                    placed[s.bone].numbers[3 + flesh_.bones[s.bone].axis]);
-  };
-  const PartSurface::Stretch& stretch = *std::ranges::max_element(surface_.of_part[part], {}, length);
-  const FleshBone& bone = flesh_.bones[stretch.bone];
-  const PlacedBone& at = placed[stretch.bone];
-  const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
-  const CrossSection section = section_at(at, bone, along);
-  Vector3d point = middle_at(at, bone, section, along);
-  if (bone.axis != 0) point.x() += kAside * stretch.side * section.half[0];
-  return {stretch.bone, at.head + at.global * point, std::min(section.half[0], section.half[1])};
+  const PartSurface::Middle& middle = surface_.middle_of_part[part];
+  const FleshBone& bone = flesh_.bones[middle.bone];
+  const PlacedBone& at = placed[middle.bone];
+  const CrossSection section = section_at(at, bone, middle.along);
+  const Vector3d point = point_of(bone, at.numbers, section, middle.along, middle.across);
+  PartPlace place{middle.bone, at.head + at.global * point, std::min(section.half[0], section.half[1]),
+                  Eigen::Matrix3Xd(3, flesh_.shapes)};
+  for (Index k = 0; k < place.by_shape.cols(); ++k) {
+    const CrossSection change = section_of(bone, bone.shapes[k], middle.along);
+    place.by_shape.col(k) = at.global * point_of(bone, bone.shapes[k], change, middle.along, middle.across);
+  }
+  return place;
 }
 
-/// Pulls a point of a bone to where it should be; what is far off counts less.
-void FitTerms::add_pull(int bone, const Vector3d& at, const Vector3d& to, double sigma_m,
-                        NormalEquations& equations) const {
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
-  const Vector3d off = at - to;
+void FitTerms::add_pull(const PartPlace& place, const Vector3d& off, double sigma_m, NormalEquations& equations) const {
   const double information = 1.0 / (sigma_m * sigma_m);
   const double weight = information * robust_weight(information * off.squaredNorm(), kLimit, 1.0, equations);
   for (int axis = 0; axis < 3; ++axis) {
-    equations.add_point(bone, at, Vector3d::Unit(axis), none, off[axis], weight);
+    const Eigen::VectorXd by_shape = place.by_shape.row(axis);
+    equations.add_point(place.bone, place.middle, Vector3d::Unit(axis), by_shape, off[axis], weight);
   }
 }
 
 void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                            NormalEquations& equations) const {
+  constexpr double kNearer = 0.7;  // what is seen of a part lies before its middle, in half widths
   for (std::size_t p = 0; p < data.centres.size(); ++p) {
     if (!data.centres[p]) continue;
     const int part = mirrored ? body_.parts[p].mirror : int(p);
     if (part < 0 || surface_.of_part[part].empty()) continue;
     const PartPlace place = place_of(part, placed);
-    const Vector3d surface = place.middle - 0.7 * place.half_m * data.centres[p]->normalized();
-    add_pull(place.bone, surface, *data.centres[p], double(kCentre_m), equations);
+    const Vector3d surface = place.middle - kNearer * place.half_m * data.centres[p]->normalized();
+    add_pull(place, surface - *data.centres[p], double(kCentre_m), equations);
   }
 }
 
@@ -355,7 +393,7 @@ void FitTerms::add_votes(const FitData& data, const std::vector<PlacedBone>& pla
   for (std::size_t p = 0; p < data.votes.size(); ++p) {
     if (surface_.of_part[p].empty()) continue;
     const PartPlace place = place_of(int(p), placed);
-    add_pull(place.bone, place.middle, data.votes[p].centre.cast<double>(), voted_sigma_m(data.votes[p]), equations);
+    add_pull(place, place.middle - data.votes[p].centre.cast<double>(), voted_sigma_m(data.votes[p]), equations);
   }
 }
 
@@ -371,7 +409,7 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
     for (const double share : kPlaces) {
       const double along = double(bone.stations.front()) + share * double(bone.stations.back() - bone.stations.front());
       const CrossSection section = section_at(placed[b], bone, along);
-      const Vector3d point = placed[b].head + placed[b].global * middle_at(placed[b], bone, section, along);
+      const Vector3d point = placed[b].head + placed[b].global * point_of(bone, placed[b].numbers, section, along);
       const double half = std::min(section.half[0], section.half[1]);
       const Silhouette::Sight sight = data.silhouette->look(point, half);
       if (sight.kind == Silhouette::Sight::Kind::on) {

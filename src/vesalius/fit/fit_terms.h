@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ namespace vesalius {
 inline constexpr float kPointWeight = 0.2F;  ///< weight of a point, since neighbours err alike
 inline constexpr float kMirrorCost = 3.F;    ///< squared deviations that a label on the wrong side costs
 
-/// The bones whose surface belongs to each part.
+/// The bones whose surface belongs to each part, and its middle.
 struct PartSurface {
   struct Stretch {
     int bone = -1;
@@ -25,6 +26,15 @@ struct PartSurface {
     int side = 0;                 ///< 1: the left half of the bone, -1: the right one, 0: both
   };
   std::vector<std::vector<Stretch>> of_part;
+
+  /// The mean of a part's surface in a body of mean shape at rest, as a point of one of its bones. A part of two bones
+  /// has it where they meet, however they are bent.
+  struct Middle {
+    int bone = -1;
+    double along = 0.0;              ///< 0 is the bone's head, 1 its tail
+    std::array<double, 2> across{};  ///< from the middle of the flesh there, in its half widths
+  };
+  std::vector<Middle> middle_of_part;
 
   /// Returns nothing for parts without surface rules, and for rules of bones that the flesh lacks.
   PartSurface(const BodyModel& body, const FleshModel& flesh);
@@ -97,16 +107,24 @@ class FitTerms {
 
   const PartSurface& surface() const { return surface_; }
 
+  /// The middle of a part's surface, optical frame.
+  struct PartPlace {
+    int bone;
+    Eigen::Vector3d middle;
+    double half_m;              ///< the smaller half width of the flesh there
+    Eigen::Matrix3Xd by_shape;  ///< derivative of the middle by the shape, the bone's head left out
+  };
+  /// Returns this for a part that has a surface.
+  PartPlace place_of(int part, const std::vector<PlacedBone>& placed) const;
+
  private:
   struct Hit;
-  struct PartPlace;
-  PartPlace place_of(int part, const std::vector<PlacedBone>& placed) const;
   Hit hit(const PlacedBone& bone, int index, const PartSurface::Stretch& stretch, const Eigen::Vector3d& at) const;
   void add_points(const FitData& data, const std::vector<PlacedBone>& placed, const std::vector<Assigned>& assigned,
                   NormalEquations& equations) const;
   void add_priors(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
-  void add_pull(int bone, const Eigen::Vector3d& at, const Eigen::Vector3d& to, double sigma_m,
-                NormalEquations& equations) const;
+  /// Pulls a part's place that is `off`; what is far off counts less.
+  void add_pull(const PartPlace& place, const Eigen::Vector3d& off, double sigma_m, NormalEquations& equations) const;
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
   void add_votes(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "vesalius/error.h"
 #include "vesalius/fit/test_flesh.h"
@@ -70,6 +71,20 @@ TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
   data.expected.loosened = 1.5;
   BodyState state = test::random_state(8, 0.2);
   state.root += Eigen::Vector3d(0.01, -0.03, 0.05);
+  expect_true_gradient(terms, data, state);
+}
+
+TEST(FitTerms, VotesForPartsHaveTheGradientOfTheirCost) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  FitData data;
+  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
+  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  BodyState state = test::random_state(10, 0.2);
+  state.shape = VectorXd::LinSpaced(builtin_flesh().shapes, -1.0, 1.0);
+  // Beside somebody's middle: near to some parts, far from others.
+  const Eigen::Vector3f middle = state.root.cast<float>() + Eigen::Vector3f(0.1F, -0.1F, 0.05F);
+  data.votes.assign(paper_body().parts.size(), {middle, 0.1F});
   expect_true_gradient(terms, data, state);
 }
 
@@ -149,6 +164,24 @@ TEST(FitTerms, BeyondAJointsRangeAndOffTheExpectedPlaceCosts) {
   BodyState beside = usual;
   beside.root.x() += static_cast<double>(options.follow_m);
   EXPECT_NEAR(costs_at(terms, data, beside).cost, cost + 1.0, 1e-6);
+}
+
+TEST(FitTerms, PartsOfTwoBonesLieWhereTheyMeet) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  BodyState state = test::usual_state(0.0);
+  test::turn(state, "l_forearm", {0.0, -1.5, 0.0});
+  const std::vector<PlacedBone> placed = place_bones(builtin_flesh(), state);
+  const auto middle_of = [&](const char* part) { return terms.place_of(paper_body().find_part(part), placed).middle; };
+  for (const auto& [part, bone] : {std::pair{"l_elbow", "l_forearm"}, {"r_elbow", "r_forearm"}, {"r_knee", "r_shin"}}) {
+    EXPECT_LT((middle_of(part) - placed[builtin_flesh().find_bone(bone)].head).norm(), 0.012) << part;
+  }
+  // Halves of the trunk lie on both sides of its line, the upper ones higher.
+  const Eigen::Vector3d left = middle_of("l_chest"), right = middle_of("r_chest"), hips = middle_of("l_hips");
+  const PlacedBone& chest = placed[builtin_flesh().find_bone("chest")];
+  EXPECT_NEAR((left + right - 2.0 * chest.head).dot(chest.global.col(0)), 0.0, 1e-6);
+  EXPECT_GT((left - right).dot(chest.global.col(0)), 0.12);
+  EXPECT_GT((left - hips).dot(chest.global.col(1)), 0.25);
 }
 
 TEST(FitTerms, PointsBelongToTheStretchOfTheirLabel) {
