@@ -26,6 +26,7 @@ from vesalius_network.damage import KINDS, Scene, damaged
 from vesalius_network.errors import InputError
 from vesalius_network.figures import figures_of
 from vesalius_network.inputs import inputs_of, without_blended
+from vesalius_network.losses import loss_of_centres
 from vesalius_network.model_file import read_network, read_sections
 from vesalius_network.nets import CONFIGS, Network, answer
 from vesalius_network.rounds import Rounds, read_pools
@@ -258,13 +259,32 @@ class Damage(unittest.TestCase):
             self.assertTrue(torch.isfinite(depth).all(), spoil.__name__)
 
 
+class Losses(unittest.TestCase):
+    def test_who_is_near_to_a_part_says_where_it_is(self):
+        target = torch.zeros(1, 6, 1, 2)  # two parts, two pixels: one is in the first part, 0.9 m from the second
+        target[0, 3, 0] = 0.9
+        target[..., 1] = float("nan")  # shows nobody
+
+        def loss(part, error_m):
+            said = target.nan_to_num()
+            said[0, 3 * part, 0, 0] += error_m
+            said[..., 1] += 5
+            return float(loss_of_centres(said, target))
+
+        self.assertEqual(loss(0, 0.0), 0.0)
+        self.assertAlmostEqual(loss(0, 0.2) / loss(1, 0.2), 10.0, 4)
+        self.assertEqual(float(loss_of_centres(target.nan_to_num(), target * float("nan"))), 0.0)
+
+
 class Files(unittest.TestCase):
     def test_weights_come_back(self):
         body = read_body((BODIES / "paper25.toml").read_text(), "")
         network = Network(CONFIGS["small"], body.parts).eval()
         weights.save(path("a.npz"), "small", body, network.state_dict(), "a test")
-        again, its_body = weights.network_of(path("a.npz"))
-        self.assertEqual(its_body.names, body.names)
+        about, state = weights.load(path("a.npz"))
+        self.assertEqual(read_body(about["body"], "a").names, body.names)
+        again = Network(CONFIGS["small"], body.parts).eval()
+        again.load_state_dict(state, strict=False)
         x = torch.rand(1, 4, 50, 70)
         for a, b in zip(answer(network, x), answer(again, x)):
             self.assertTrue(torch.equal(a, b))
@@ -281,7 +301,7 @@ class Files(unittest.TestCase):
 
     def test_others_are_refused(self):
         Path(path("bad.npz")).write_bytes(b"nothing")
-        for name in ("bad.npz", "none.npz", "none.pt"):
+        for name in ("bad.npz", "none.npz"):
             with self.assertRaisesRegex(InputError, name):
                 weights.load(path(name))
 
@@ -356,8 +376,9 @@ class Quantising(unittest.TestCase):
         convolutions, *_, centres = read_network(read_sections(path("all.model"))["network"][1])
         self.assertEqual(centres, len(convolutions) - 1)
         _, state = state_of(convolutions, 25, "all")
-        _, older = state_of(convolutions[:-1], 25, "older")
-        self.assertEqual(set(state) - set(older), {"joints.weight", "joints.bias"})
+        _, older = state_of(convolutions[:-3], 25, "older")
+        self.assertTrue(all(name.startswith("joints.") for name in set(state) - set(older)))
+        self.assertIn("joints.1.bias", set(state) - set(older))
         self.assertTrue(torch.equal(state["inst.weight"], older["inst.weight"]))
 
     def test_sections_come_back_with_and_without_centres(self):

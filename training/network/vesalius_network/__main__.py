@@ -33,7 +33,7 @@ def parse(arguments):
     parser.add_argument("--batch", type=int, help="pictures at once (192 on a card, else 16)")
     parser.add_argument("--rate", type=float, help="learning rate (3e-3 times the root of batch / 192)")
     parser.add_argument("--seed", type=int, default=Plan.seed, help="of all that is random (%(default)s)")
-    parser.add_argument("--init", default="", metavar="FILE", help="weights to begin with (.npz, .pt)")
+    parser.add_argument("--init", default="", metavar="FILE", help="weights (.npz) or a model to begin with")
     parser.add_argument("--device", default="auto", help="cpu, cuda, cuda:N or auto, a card where one works")
     parser.add_argument("--precision", choices=["auto", "bf16", "float32"], default="auto", help="of products")
     parser.add_argument("--threads", type=int, help="of the processor (all)")

@@ -17,7 +17,7 @@ from .weights import load
 UNIT = 1 / STEPS
 # Kernels before a normalisation grow to about this while they learn, which makes the same rate a smaller step.
 GROWN = 0.13
-WEIGHTS = (".npz", ".pt")  # endings of their names; all else is a model
+WEIGHTS = ".npz"  # ending of their names; all else is a model
 
 
 def _alike(layer, convolution):
@@ -30,8 +30,9 @@ def _alike(layer, convolution):
 def _config_of(convolutions, parts, place):
     """Returns the configuration whose network has these convolutions, perhaps without the parts' centres, and its layers."""
     for config in CONFIGS:
-        layers, *_, centres = layers_of(Network(CONFIGS[config], parts).state_dict())
-        if len(convolutions) in (centres, len(layers)) and all(map(_alike, layers, convolutions)):
+        layers, *_ = layers_of(Network(CONFIGS[config], parts).state_dict())
+        without = sum(not layer.name.startswith("joints") for layer in layers)
+        if len(convolutions) in (without, len(layers)) and all(map(_alike, layers, convolutions)):
             return config, layers[: len(convolutions)]
     raise InputError(f"{place}: expected a network of config {' or '.join(CONFIGS)}")
 
@@ -120,7 +121,7 @@ def begin_from(network, config, body, path, some_inputs):
     """Takes over the weights of a file, or those of a model's network, for which `some_inputs()` [n, 4, h, w] are looked at.
     The heads of one for another body begin anew, and so do those that it has not. Returns a text about it."""
     path = Path(path)
-    of_model = path.suffix not in WEIGHTS
+    of_model = path.suffix != WEIGHTS
     about, state = _read_model(path) if of_model else load(path)
     if about["config"] != config:
         raise InputError(f"{path}: a network of config {about['config']}, expected {config}")
@@ -129,7 +130,7 @@ def begin_from(network, config, body, path, some_inputs):
     anew = () if same else tuple(HEAD_UNITS)
     state = {name: value for name, value in state.items() if not (anew and name.startswith(anew))}
     missing = network.load_state_dict(state, strict=False).missing_keys
-    anew += ("joints",) if of_model and "joints.weight" not in state else ()
+    anew += ("joints",) if of_model and "joints.1.weight" not in state else ()
     needed = [name for name in missing if "num_batches" not in name and not (anew and name.startswith(anew))]
     if needed:
         raise InputError(f"{path}: expected the weights {needed[0]}")

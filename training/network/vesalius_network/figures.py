@@ -7,7 +7,7 @@ import torch
 
 from .damage import as_program_sees
 from .inputs import inputs_of
-from .losses import PERSON_STEP, targets_of
+from .losses import NEAR_M, PERSON_STEP, targets_of
 from .nets import answer
 from .views import voters
 
@@ -15,6 +15,7 @@ BACKGROUND_WEIGHT = 0.5  # by which the background's probability counts against 
 LEAST_PIXELS = 7  # of a person at 1/4 of the size, for its heading to count
 AT_ONCE = 8
 NEAR = math.pi / 4
+LONG_M = 0.3
 
 
 @dataclass
@@ -23,18 +24,20 @@ class Figures:
     iou: float  # of all people's pixels, body against background
     empty: float  # share of pixels taken for a body where nobody is
     heading: float  # share of people whose heading is within 45 degrees
+    centres: float  # share of ways to the centres of parts that end within NEAR_M of them, of ways up to LONG_M
 
     def __str__(self):
         return (
             f"parts {100 * self.parts:.1f} %, person IoU {self.iou:.3f}, body in empty frames "
-            f"{100 * self.empty:.2f} %, heading within 45° {100 * self.heading:.0f} %"
+            f"{100 * self.empty:.2f} %, heading within 45° {100 * self.heading:.0f} %, parts {100 * NEAR_M:.0f} cm off "
+            f"at most {100 * self.centres:.0f} %"
         )
 
 
 class _Counts:
     def __init__(self, classes, device):
         self.inside = torch.zeros(classes, classes, dtype=torch.long, device=device)
-        self.both = self.either = self.empty = self.empty_all = self.people = self.near = 0
+        self.both = self.either = self.empty = self.empty_all = self.people = self.near = self.ways = self.right = 0
 
     def add_pixels(self, logits, targets):
         parts = logits.shape[1] - 1
@@ -62,6 +65,12 @@ class _Counts:
             self.people += 1
             self.near += abs(off) < NEAR
 
+    def add_centres(self, centres, ways):
+        target, said = (x.unflatten(1, (-1, 3)) for x in (ways, centres))
+        short = target.norm(dim=2) < LONG_M
+        self.ways += int(short.sum())
+        self.right += int((((said - target).norm(dim=2) < NEAR_M) & short).sum())
+
     def figures(self):
         pixels = self.inside.sum(1)
         recall = self.inside.diagonal()[pixels > 0] / pixels[pixels > 0]
@@ -72,6 +81,7 @@ class _Counts:
             share(self.both, self.either),
             share(self.empty, self.empty_all),
             share(self.near, self.people),
+            share(self.right, self.ways),
         )
 
 
@@ -83,7 +93,9 @@ def figures_of(network, pools, body):
         for begin in range(0, len(pool), AT_ONCE):
             views = pool.views(slice(begin, begin + AT_ONCE))
             depth = as_program_sees(views.depth)
-            classes, person, _ = answer(network, inputs_of(depth, views.focal))
-            counts.add_pixels(classes, targets_of(views, depth, body))
+            classes, person, centres = answer(network, inputs_of(depth, views.focal))
+            targets = targets_of(views, depth, body)
+            counts.add_pixels(classes, targets)
             counts.add_headings(person, views, depth)
+            counts.add_centres(centres, targets.to_centres)
     return counts.figures()

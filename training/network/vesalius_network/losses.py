@@ -11,7 +11,7 @@ from .views import MOST_PEOPLE, voters
 PERSON_STEP, CENTRES_STEP = 4, 8  # pixels of the picture a pixel of the answer
 BODY_WEIGHT = 1.5  # of a body's pixel, beside one of the background
 BALANCE = 0.6  # parts of share s have weight s^-BALANCE
-NEAR_M = 0.1  # below this, errors of places count by their square
+NEAR_M = 0.1  # below this, errors of places count by their square, and ways to parts in full
 WEIGHTS = {"body": 4.0, "parts": 1.0, "middle": 0.8, "heading": 0.6, "centres": 2.0}
 
 
@@ -74,6 +74,16 @@ def _mean_where_known(error, target):
     return (error * known).sum() / known.any(1).sum().clamp(min=1)
 
 
+def loss_of_centres(centres, target):
+    """How wrong ways [n, 3 parts, h, w] are. Who is near to a part says where it is (vote_parts), and the many who are far
+    from it are no reason to draw all of their ways together: a way counts the less the longer it is."""
+    known, ways = ~target.isnan(), target.nan_to_num()
+    length = ways.unflatten(1, (-1, 3)).norm(dim=2, keepdim=True)
+    weight = (NEAR_M / (NEAR_M + length)).expand(-1, -1, 3, -1, -1).flatten(1, 2) * known
+    error = F.smooth_l1_loss(centres, ways, beta=NEAR_M, reduction="none")
+    return (error * weight).sum() / weight.sum().clamp(min=1)
+
+
 def losses_of(answers, targets, weights):
     """Returns the losses by name, to be added with WEIGHTS. `answers` are those of nets.answer."""
     classes, person, centres = answers
@@ -84,14 +94,11 @@ def losses_of(answers, targets, weights):
     wrong = torch.where(body, BODY_WEIGHT * F.softplus(-logit), F.softplus(logit)) * targets.seen
     part = targets.classes.clamp(max=parts - 1)
     of_part = F.cross_entropy(classes[:, :parts], part, weight=weights, reduction="none") * body
-    ways = targets.to_middle.nan_to_num(), targets.to_centres.nan_to_num()
-    to_middle = F.smooth_l1_loss(person[:, :3], ways[0], beta=NEAR_M, reduction="none")
-    to_centres = F.smooth_l1_loss(centres, ways[1], beta=NEAR_M, reduction="none")
-    known = ~targets.to_centres.isnan()
+    to_middle = F.smooth_l1_loss(person[:, :3], targets.to_middle.nan_to_num(), beta=NEAR_M, reduction="none")
     return {
         "body": wrong.sum() / targets.seen.sum().clamp(min=1),
         "parts": of_part.sum() / (weights[part] * body).sum().clamp(min=1),
         "middle": _mean_where_known(to_middle, targets.to_middle),
         "heading": _mean_where_known((person[:, 3:] - targets.heading.nan_to_num()).square(), targets.heading),
-        "centres": (to_centres * known).sum() / known.sum().clamp(min=1),
+        "centres": loss_of_centres(centres, targets.to_centres),
     }

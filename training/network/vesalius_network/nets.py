@@ -66,7 +66,7 @@ class Network(nn.Module):
             below = channels
         self.labels = nn.Conv2d(back[3], parts + 1, 1)
         self.inst = nn.Conv2d(back[2], PERSON, 1)
-        self.joints = nn.Conv2d(back[1], 3 * parts, 1)
+        self.joints = nn.Sequential(Residual(back[1]), nn.Conv2d(back[1], 3 * parts, 1))
 
     def forward(self, x):
         finer = [self.stem(x)]

@@ -29,7 +29,7 @@ FINER = 4  # kNearFiner
 LOGIT_UNIT = 1 / 256  # kLogitUnit
 PERSON_UNITS = np.array([1e-3, 1e-3, 1e-3, 1 / 8192, 1 / 8192])  # of a PersonVote, in m and 1
 CENTRE_UNIT = 1e-3  # of a way to a part's centre, in m
-HEAD_UNITS = {"labels": LOGIT_UNIT, "inst": PERSON_UNITS, "joints": CENTRE_UNIT}  # of the heads in nets.py
+HEAD_UNITS = {"labels": LOGIT_UNIT, "inst": PERSON_UNITS, "joints.1": CENTRE_UNIT}  # of the heads in nets.py
 WIDE_STEPS = 64  # of a wide result in one of the narrow result that it is added to
 SHARES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)  # of the largest value, as the most that a scale reaches
 MOST_FRAMES = 60  # of a dataset by which scales are chosen
@@ -117,7 +117,7 @@ def layers_of(state):
     person = folder.add("inst", back[2], wide=True)
     folder.layers[person].weight = folder.layers[person].weight[:PERSON]
     folder.layers[person].bias = folder.layers[person].bias[:PERSON]
-    centres = folder.add("joints", back[1], wide=True)
+    centres = folder.add("joints.1", folder.add_blocks("joints", 0, back[1]), wide=True)
     return folder.layers, classes, person, centres
 
 
@@ -270,7 +270,7 @@ def write_network(weights, folders, out, most, note=""):
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="vesalius_network.quantise", description="Makes a network of integers.")
-    parser.add_argument("weights", help="network.npz, or a .pt from before this tool")
+    parser.add_argument("weights", help="network.npz")
     parser.add_argument("data", nargs="+", help="folders of labelled frames by which scales are chosen")
     parser.add_argument("--out", required=True, help="the .network to write, of which `vesalius convert` makes a model")
     parser.add_argument("--frames", type=int, default=MOST_FRAMES, help="most frames of a folder (%(default)s)")
