@@ -29,8 +29,8 @@ class Figures:
     def __str__(self):
         return (
             f"parts {100 * self.parts:.1f} %, person IoU {self.iou:.3f}, body in empty frames "
-            f"{100 * self.empty:.2f} %, heading within 45° {100 * self.heading:.0f} %, parts {100 * NEAR_M:.0f} cm off "
-            f"at most {100 * self.centres:.0f} %"
+            f"{100 * self.empty:.2f} %, heading within 45° {100 * self.heading:.0f} %, "
+            f"ways to parts within {100 * NEAR_M:.0f} cm {100 * self.centres:.0f} %"
         )
 
 
