@@ -73,14 +73,16 @@ Vector3d point_of(const FleshBone& bone, const std::array<Number, FleshBone::kNu
 PartSurface::Middle middle_of(const std::vector<PartSurface::Stretch>& stretches, const FleshModel& flesh,
                               const std::vector<PlacedBone>& rest) {
   constexpr int kRings = 16;
+  constexpr double kLeastLength = 1e-3;  // of a stretch beyond the last station, where a bone's rounded end is
   PartSurface::Middle middle;
   Vector3d sum = Vector3d::Zero();
   double area = 0.0, longest = 0.0;
   for (const PartSurface::Stretch& stretch : stretches) {
     const FleshBone& bone = flesh.bones[stretch.bone];
     const PlacedBone& placed = rest[stretch.bone];
-    const double from = std::max(stretch.from, double(bone.stations.front()));
-    const double length = std::min(stretch.to, double(bone.stations.back())) - from;
+    const auto first = double(bone.stations.front()), last = double(bone.stations.back());
+    const double from = std::clamp(stretch.from, first, last);
+    const double length = std::max(std::clamp(stretch.to, first, last) - from, kLeastLength);
     const double length_m = length * std::abs(placed.numbers[3 + bone.axis]);
     if (length_m > longest) middle.bone = stretch.bone;
     longest = std::max(longest, length_m);

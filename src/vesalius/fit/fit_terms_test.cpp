@@ -184,6 +184,18 @@ TEST(FitTerms, PartsOfTwoBonesLieWhereTheyMeet) {
   EXPECT_GT((left - hips).dot(chest.global.col(1)), 0.25);
 }
 
+TEST(FitTerms, APartMayBeTheEndOfABone) {
+  BodyModel body = paper_body();
+  const int hand = body.find_part("l_hand");
+  const auto rule = std::ranges::find(body.surface, hand, &SurfaceRule::part);
+  ASSERT_NE(rule, body.surface.end());
+  rule->from = 0.95F;  // beyond the last station of its flesh
+  const PartSurface::Middle& middle = PartSurface(body, builtin_flesh()).middle_of_part[hand];
+  ASSERT_EQ(middle.bone, builtin_flesh().find_bone("l_hand"));
+  EXPECT_GT(middle.along, 0.7);
+  EXPECT_LT(middle.along, 1.0);
+}
+
 TEST(FitTerms, PointsBelongToTheStretchOfTheirLabel) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
