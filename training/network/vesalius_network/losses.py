@@ -11,7 +11,7 @@ from .views import MOST_PEOPLE, voters
 PERSON_STEP, CENTRES_STEP = 4, 8  # pixels of the picture a pixel of the answer
 BODY_WEIGHT = 1.5  # of a body's pixel, beside one of the background
 BALANCE = 0.6  # parts of share s have weight s^-BALANCE
-NEAR_M = 0.1  # below this, errors of places count by their square, and ways to parts in full
+NEAR_M = 0.1  # below this, errors of places count by their square; a way to a part as long as this counts half
 WEIGHTS = {"body": 4.0, "parts": 1.0, "middle": 0.8, "heading": 0.6, "centres": 2.0}
 
 
