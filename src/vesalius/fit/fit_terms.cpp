@@ -103,6 +103,11 @@ PartSurface::Middle middle_of(const std::vector<PartSurface::Stretch>& stretches
   const CrossSection section = section_at(placed, bone, middle.along);
   const std::array<int, 2> axes = axes_across(bone.axis);
   for (int i = 0; i < 2; ++i) middle.across[i] = (point[axes[i]] - section.centre[i]) / section.half[i];
+  middle.by_shape.resize(3, flesh.shapes);
+  for (Index k = 0; k < middle.by_shape.cols(); ++k) {
+    const CrossSection change = section_of(bone, bone.shapes[k], middle.along);
+    middle.by_shape.col(k) = point_of(bone, bone.shapes[k], change, middle.along, middle.across);
+  }
   return middle;
 }
 
@@ -360,13 +365,8 @@ FitTerms::PartPlace FitTerms::place_of(int part, const std::vector<PlacedBone>& 
   const PlacedBone& at = placed[middle.bone];
   const CrossSection section = section_at(at, bone, middle.along);
   const Vector3d point = point_of(bone, at.numbers, section, middle.along, middle.across);
-  PartPlace place{middle.bone, at.head + at.global * point, std::min(section.half[0], section.half[1]),
-                  Eigen::Matrix3Xd(3, flesh_.shapes)};
-  for (Index k = 0; k < place.by_shape.cols(); ++k) {
-    const CrossSection change = section_of(bone, bone.shapes[k], middle.along);
-    place.by_shape.col(k) = at.global * point_of(bone, bone.shapes[k], change, middle.along, middle.across);
-  }
-  return place;
+  return {middle.bone, at.head + at.global * point, std::min(section.half[0], section.half[1]),
+          at.global * middle.by_shape};
 }
 
 void FitTerms::add_pull(const PartPlace& place, const Vector3d& off, double sigma_m, NormalEquations& equations) const {

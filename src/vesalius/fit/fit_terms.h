@@ -33,6 +33,7 @@ struct PartSurface {
     int bone = -1;
     double along = 0.0;              ///< 0 is the bone's head, 1 its tail
     std::array<double, 2> across{};  ///< from the middle of the flesh there, in its half widths
+    Eigen::Matrix3Xd by_shape;       ///< its derivative by the shape, in the bone's frame, the bone's head left out
   };
   std::vector<Middle> middle_of_part;
 
@@ -112,7 +113,7 @@ class FitTerms {
     int bone;
     Eigen::Vector3d middle;
     double half_m;              ///< the smaller half width of the flesh there
-    Eigen::Matrix3Xd by_shape;  ///< derivative of the middle by the shape, the bone's head left out
+    Eigen::Matrix3Xd by_shape;  ///< derivative of the middle by the shape, optical frame, the bone's head left out
   };
   /// Returns this for a part that has a surface.
   PartPlace place_of(int part, const std::vector<PlacedBone>& placed) const;

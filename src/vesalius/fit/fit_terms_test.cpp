@@ -13,12 +13,18 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// What is known of a seen body, without its outline.
-FitData data_of(const test::SeenBody& seen) {
+/// What is known before anything is seen: the population's shapes.
+FitData data_of_nobody() {
   FitData data;
-  data.points = seen.person.points;
   data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
   data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  return data;
+}
+
+/// What is known of a seen body, without its outline.
+FitData data_of(const test::SeenBody& seen) {
+  FitData data = data_of_nobody();
+  data.points = seen.person.points;
   return data;
 }
 
@@ -64,9 +70,7 @@ TEST(FitTerms, PriorsAndLimitsHaveTheGradientOfTheirCost) {
 TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
-  FitData data;
-  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
-  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  FitData data = data_of_nobody();
   data.expected.pose = test::usual_state(0.7);
   data.expected.loosened = 1.5;
   BodyState state = test::random_state(8, 0.2);
@@ -77,9 +81,7 @@ TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
 TEST(FitTerms, VotesForPartsHaveTheGradientOfTheirCost) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
-  FitData data;
-  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
-  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  FitData data = data_of_nobody();
   BodyState state = test::random_state(10, 0.2);
   state.shape = VectorXd::LinSpaced(builtin_flesh().shapes, -1.0, 1.0);
   // Beside somebody's middle: near to some parts, far from others.
@@ -125,9 +127,7 @@ TEST(FitTerms, WhoLeansFarBackDoesNotWalk) {
 TEST(FitTerms, TheGroundHasTheGradientOfItsCost) {
   FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
-  FitData data;
-  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
-  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  FitData data = data_of_nobody();
   const BodyState state = test::random_state(9, 0.2);
   const double without = costs_at(terms, data, state).cost;
   // Knee-deep in the ground, and the feet just above it; the ground is not level with the picture.
@@ -148,9 +148,7 @@ TEST(FitTerms, TheGroundHasTheGradientOfItsCost) {
 TEST(FitTerms, BeyondAJointsRangeAndOffTheExpectedPlaceCosts) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
-  FitData data;
-  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
-  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  FitData data = data_of_nobody();
   const BodyState usual = test::usual_state(0.0);
   const double cost = costs_at(terms, data, usual).cost;
   BodyState bent = usual;
