@@ -125,7 +125,7 @@ def begin_from(network, config, body, path, some_inputs):
     about, state = _read_model(path) if of_model else load(path)
     if about["config"] != config:
         raise InputError(f"{path}: a network of config {about['config']}, expected {config}")
-    names = read_body(about["body"], path).names if about["body"] else body.names
+    names = read_body(about["body"], path).names
     same = names == body.names and about["classes"] == body.classes
     anew = () if same else tuple(HEAD_UNITS)
     state = {name: value for name, value in state.items() if not (anew and name.startswith(anew))}

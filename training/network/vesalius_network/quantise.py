@@ -18,7 +18,7 @@ import torch.nn.functional as F
 from .damage import as_program_sees
 from .errors import InputError
 from .inputs import inputs_of
-from .nets import PERSON, padded
+from .nets import padded
 from .shards import Dataset
 from .weights import load, write_whole
 
@@ -115,8 +115,6 @@ def layers_of(state):
         back.append(at := folder.add_blocks(f"dec.{j}", 2, lateral))
     classes = folder.add("labels", back[3], wide=True)
     person = folder.add("inst", back[2], wide=True)
-    folder.layers[person].weight = folder.layers[person].weight[:PERSON]
-    folder.layers[person].bias = folder.layers[person].bias[:PERSON]
     centres = folder.add("joints.1", folder.add_blocks("joints", 0, back[1]), wide=True)
     return folder.layers, classes, person, centres
 

@@ -10,6 +10,7 @@ import torch
 
 from .errors import InputError
 
+
 def write_whole(path, data):
     """Writes a file beside its place and renames it."""
     beside = Path(f"{path}.tmp")
