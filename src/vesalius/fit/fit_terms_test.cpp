@@ -188,7 +188,8 @@ TEST(FitTerms, APartMayBeTheEndOfABone) {
   const auto rule = std::ranges::find(body.surface, hand, &SurfaceRule::part);
   ASSERT_NE(rule, body.surface.end());
   rule->from = 0.95F;  // beyond the last station of its flesh
-  const PartSurface::Middle& middle = PartSurface(body, builtin_flesh()).middle_of_part[hand];
+  const PartSurface surface(body, builtin_flesh());
+  const PartSurface::Middle& middle = surface.middle_of_part[hand];
   ASSERT_EQ(middle.bone, builtin_flesh().find_bone("l_hand"));
   EXPECT_GT(middle.along, 0.7);
   EXPECT_LT(middle.along, 1.0);
