@@ -66,6 +66,7 @@ struct PartDistribution {
     std::array<std::vector<float>, 3> factors_m;  ///< [axis][factor]: what a standard deviation of the factor adds
     float residual_m = 0.F;                       ///< standard deviation along an axis that the factors leave
     float depth_m = 0.F;  ///< by which the centre of its volume lies behind that of its surface, along the viewing ray
+    float observed_m = 0.F;  ///< standard deviation along an axis of its observed centre beside its votes; 0: exact
   };
   /// Logit of the probability that a predicted part lies within 10 cm of the truth: bias + slope * log(sigma in m).
   struct Confidence {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vesalius/base/body_heading.h"
+#include "vesalius/predict_parts.h"
 
 namespace vesalius {
 namespace {
@@ -50,11 +51,12 @@ Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, 
 }
 
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton) {
-  const Eigen::Vector3f up = body_up(given_centres(skeleton), body);
+  const Skeleton drawn = drawn_to_votes(body.distribution, skeleton);
+  const Eigen::Vector3f up = body_up(given_centres(drawn), body);
   std::vector<std::vector<Joint>> sets;
   for (const JointSet& set : body.joint_sets) {
     std::vector<Joint>& joints = sets.emplace_back();
-    for (const JointDefinition& definition : set.joints) joints.push_back(derive_joint(definition, skeleton, up));
+    for (const JointDefinition& definition : set.joints) joints.push_back(derive_joint(definition, drawn, up));
   }
   return sets;
 }

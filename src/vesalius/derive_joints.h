@@ -15,7 +15,7 @@ std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton);
 /// all, and the offsets stay. `up` is the body's axis (body_up).
 Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, const Eigen::Vector3f& up);
 
-/// Returns the joints of all joint sets of the body model, [set][joint].
+/// Returns the joints of all joint sets of the body model, [set][joint], from parts drawn to their votes.
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton);
 
 }  // namespace vesalius

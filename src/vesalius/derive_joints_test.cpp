@@ -73,6 +73,18 @@ TEST(DeriveJoints, TakesTheBodysAxisFromTheParts) {
   EXPECT_LT((derive_joints(body, s)[0][0].position - derive_joint(elbow(), s, up).position).norm(), 1e-6F);
 }
 
+TEST(DeriveJoints, FollowsVotesForPartsThatAreSeen) {
+  BodyModel body = paper_body();
+  Skeleton s = whole_skeleton();
+  for (const SkeletonPart& part : s.parts) s.voted.push_back({part.centre, 0.F});
+  const int chest = body.find_part("l_chest");
+  s.voted[chest].centre.y() += 1.F;
+  const auto shoulder = [&] { return joint_of(derive_joints(body, s), "coco17", "l_shoulder").position.y(); };
+  const float drawn = shoulder();
+  body.distribution.parts[chest].observed_m = 0.F;
+  EXPECT_GT(drawn, shoulder() + 0.05F);
+}
+
 TEST(DeriveJoints, HasNoJointThatTheBodyLacks) {
   const auto sets = derive_joints(paper_body(), whole_skeleton());
   EXPECT_EQ(joint_of(sets, "coco17", "l_ear").state, State::none);  // these parts have no ears

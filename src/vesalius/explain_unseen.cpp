@@ -34,8 +34,9 @@ class Places {
     const std::vector<SkeletonPart>& parts = person.skeleton.parts;
     const auto is_known = [](const SkeletonPart& part) { return part.state != State::none; };
     if (body.distribution.parts.empty() || std::ranges::all_of(parts, is_known)) return;
-    const std::vector<PredictedPart> likely = predict_parts(body.distribution, given_centres(person.skeleton),
-                                                            counted_votes(body.distribution, person.skeleton));
+    const Skeleton drawn = drawn_to_votes(body.distribution, person.skeleton);
+    const std::vector<PredictedPart> likely =
+        predict_parts(body.distribution, given_centres(drawn), counted_votes(body.distribution, drawn));
     if (likely.empty()) return;
     guess_ = person.skeleton;
     for (std::size_t p = 0; p < likely.size(); ++p) {

@@ -179,10 +179,22 @@ const std::vector<VotedPart>& counted_votes(const PartDistribution& distribution
   return distribution.voted_confidence ? skeleton.voted : none;
 }
 
+Skeleton drawn_to_votes(const PartDistribution& distribution, Skeleton skeleton) {
+  const std::vector<VotedPart>& voted = counted_votes(distribution, skeleton);
+  for (std::size_t p = 0; p < voted.size(); ++p) {
+    SkeletonPart& part = skeleton.parts[p];
+    if (part.state != State::observed) continue;
+    const double ratio = double(distribution.parts[p].observed_m) / voted_sigma_m(voted[p]);
+    const auto share = float(ratio * ratio / (1.0 + ratio * ratio));
+    part.centre += share * (surface_of(voted[p].centre, distribution.parts[p].depth_m) - part.centre);
+  }
+  return skeleton;
+}
+
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
   if (body.distribution.parts.empty()) return interpolate_missing_parts(body, skeleton);
   std::vector<Eigen::Vector3f> centres;
-  for (const SkeletonPart& part : skeleton.parts) {
+  for (const SkeletonPart& part : drawn_to_votes(body.distribution, skeleton).parts) {
     const bool known = part.state == State::observed;
     centres.push_back(known ? part.centre : Eigen::Vector3f::Constant(std::nanf("")));
   }

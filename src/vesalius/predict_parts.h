@@ -39,6 +39,10 @@ float predicted_confidence(const PartDistribution::Confidence& confidence, float
 /// Returns the votes that count for a skeleton: none if the distribution does not know how to take them.
 const std::vector<VotedPart>& counted_votes(const PartDistribution& distribution, const Skeleton& skeleton);
 
+/// Returns the skeleton with the centre of each observed part drawn to the votes for it: the mean of both, weighed by
+/// their variances. Joints and predicted parts follow from these; a part's own centre stays that of its visible surface.
+Skeleton drawn_to_votes(const PartDistribution& distribution, Skeleton skeleton);
+
 /// Fills in the parts that were not observed. With a distribution in the body those get a place that reach
 /// kLeastPredictedConfidence, votes included; without, those between two observed ones, on the line between these and
 /// in the proportion of the link lengths, with half of the weaker neighbour's confidence. Their state is predicted.

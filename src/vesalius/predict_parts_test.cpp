@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vesalius/vote_parts.h"
+
 namespace vesalius {
 namespace {
 
@@ -116,17 +118,23 @@ TEST(PredictParts, IsLessSureOfWhatMovesFreely) {
   EXPECT_GT(predicted_confidence(cross().confidence, 0.05F), predicted_confidence(cross().confidence, 0.1F));
 }
 
-TEST(PredictMissingParts, GivesThoseAPlaceThatAreSureEnough) {
-  BodyModel body;
-  body.parts.resize(5);
-  body.distribution = cross();
+/// Returns a skeleton all of whose parts are observed at these places.
+Skeleton seen_at(const std::vector<Vector3f>& places) {
   Skeleton s;
-  for (const Vector3f& place : placed(0.F)) {
+  for (const Vector3f& place : places) {
     SkeletonPart part;
     part.state = State::observed;
     part.centre = place;
     s.parts.push_back(part);
   }
+  return s;
+}
+
+TEST(PredictMissingParts, GivesThoseAPlaceThatAreSureEnough) {
+  BodyModel body;
+  body.parts.resize(5);
+  body.distribution = cross();
+  Skeleton s = seen_at(placed(0.F));
   const Vector3f hidden = s.parts[2].centre;
   s.parts[2] = s.parts[4] = {};
   predict_missing_parts(body, s);
@@ -178,6 +186,25 @@ TEST(PredictParts, BelievesWhatIsSeenMoreThanVotes) {
   for (std::size_t p = 0; p < seen.size(); ++p) EXPECT_LT((with[p].centre - seen[p]).norm(), 0.01F) << p;
 }
 
+TEST(DrawnToVotes, LiesBetweenWhatIsSeenAndVotesByTheirVariances) {
+  PartDistribution d = voted_cross();
+  Skeleton s = seen_at(placed(0.F));
+  s.parts[3].state = State::predicted;
+  std::vector<Vector3f> elsewhere = placed(0.F);
+  for (Vector3f& place : elsewhere) place += Vector3f(0.F, 0.2F, 0.F);
+  s.voted = votes_for(elsewhere, 0.F);
+  const auto sigma_m = static_cast<float>(voted_sigma_m(s.voted[0]));
+  d.parts[1].observed_m = d.parts[3].observed_m = sigma_m;
+  d.parts[2].observed_m = 2.F * sigma_m;
+  const auto moved = [&](std::size_t p) { return (drawn_to_votes(d, s).parts[p].centre - s.parts[p].centre).norm(); };
+  EXPECT_FLOAT_EQ(moved(0), 0.F);  // as if it were exact
+  EXPECT_NEAR(moved(1), 0.1F, 1e-4F);
+  EXPECT_NEAR(moved(2), 0.16F, 1e-4F);
+  EXPECT_FLOAT_EQ(moved(3), 0.F);  // votes are in what is predicted
+  d.voted_confidence.reset();
+  EXPECT_FLOAT_EQ(moved(1), 0.F);
+}
+
 TEST(PredictMissingParts, TakesVotesWhereTheBodySaysHowSureTheyAre) {
   BodyModel body;
   body.parts.resize(5);
@@ -194,6 +221,26 @@ TEST(PredictMissingParts, TakesVotesWhereTheBodySaysHowSureTheyAre) {
   body.distribution.voted_confidence.reset();
   predict_missing_parts(body, without);
   for (const SkeletonPart& part : without.parts) EXPECT_EQ(part.state, State::none);
+}
+
+TEST(PredictMissingParts, GoesByWhatIsSeenAndVotesTogether) {
+  BodyModel body;
+  body.parts.resize(5);
+  body.distribution = voted_cross();
+  Skeleton s = seen_at(placed(0.F));
+  for (SkeletonPart& part : s.parts) part.centre.y() += 0.1F;
+  s.parts[4] = {};
+  s.voted = votes_for(placed(0.F), 0.F);
+  s.voted[4].spread_m = 1.F;  // nobody knows where the fifth is
+  const auto error = [&] {
+    Skeleton filled = s;
+    predict_missing_parts(body, filled);
+    EXPECT_FLOAT_EQ((filled.parts[0].centre - s.parts[0].centre).norm(), 0.F);  // stays what is visible
+    return (filled.parts[4].centre - placed(0.F)[4]).norm();
+  };
+  EXPECT_GT(error(), 0.07F);
+  for (PartDistribution::Part& part : body.distribution.parts) part.observed_m = 0.5F;
+  EXPECT_LT(error(), 0.03F);
 }
 
 TEST(BestRotation, UndoesATurnAndMakesNoMirrorImage) {

@@ -59,6 +59,7 @@ std::string parts_toml(const std::vector<KnownPerson>& people, const BodyModel& 
     const PartDistribution::Part& part = fitted.parts[p];
     toml += fmt::format("\n[[distribution.part]]\nname = \"{}\"\nmean = [{}]\nresidual = {:.4f}\ndepth = {:.4f}\n",
                         body.parts[p].name, numbers(part.mean_m), part.residual_m, part.depth_m);
+    if (part.observed_m > 0.F) toml += fmt::format("observed = {:.2f}\n", part.observed_m);
     for (std::size_t axis = 0; axis < part.factors_m.size(); ++axis) {
       toml += fmt::format("{} = [{}]\n", "xyz"[axis], numbers(part.factors_m[axis]));
     }

@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "metrics/joint_metrics.h"
 #include "metrics/statistics.h"
@@ -24,6 +26,8 @@ constexpr std::size_t kLeastPeople = 100;
 constexpr float kOnPart_m = 0.2F;
 /// Standard deviation along an axis of the centres observed on their part.
 constexpr float kNoise_m = 0.04F;
+/// What is tried as the standard deviation of an observed centre beside votes.
+constexpr std::array kObserved_m{0.F, 0.01F, 0.02F, 0.03F, 0.04F, 0.06F, 0.08F, 0.1F, 0.12F, 0.16F, 0.2F, 0.3F, 0.4F};
 constexpr int kRounds = 8;  ///< rounds of turning all bodies onto their mean
 
 bool complete(const KnownPerson& person) {
@@ -141,6 +145,32 @@ PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Mat
   return distribution;
 }
 
+/// Fits how far off observed centres are beside votes: where both together are least off, the same for both sides.
+void fit_observed(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m, const BodyModel& body,
+                  PartDistribution& distribution) {
+  const auto pair_of = [&](std::size_t p) { return std::min(p, std::size_t(body.parts[p].mirror)); };
+  const PartDistribution exact = distribution;
+  std::vector<double> least(exact.parts.size(), std::numeric_limits<double>::infinity());
+  for (const float observed_m : kObserved_m) {
+    PartDistribution tried = exact;
+    for (PartDistribution::Part& part : tried.parts) part.observed_m = observed_m;
+    std::vector<double> off_m(least.size(), 0.0);
+    for (const KnownPerson& person : people) {
+      const Skeleton drawn = drawn_to_votes(tried, person.skeleton);
+      const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
+      for (std::size_t p = 0; p < surfaces.size(); ++p) {
+        if (drawn.parts[p].state != State::observed || !surfaces[p].allFinite()) continue;
+        off_m[pair_of(p)] += double(std::min((drawn.parts[p].centre - surfaces[p]).norm(), kOnPart_m));
+      }
+    }
+    for (std::size_t p = 0; p < least.size(); ++p) {
+      if (off_m[pair_of(p)] >= least[p]) continue;
+      least[p] = off_m[pair_of(p)];
+      distribution.parts[p].observed_m = observed_m;
+    }
+  }
+}
+
 /// A predicted part.
 struct Outcome {
   double log_sigma = 0.0;
@@ -159,7 +189,8 @@ std::vector<Outcome> outcomes_of(const std::vector<KnownPerson>& people, const s
       if (part.state == State::predicted) part.state = State::none;
     }
     if (!voted) observed.voted.clear();
-    const std::vector<PredictedPart> predicted = predict_parts(distribution, given_centres(observed), observed.voted);
+    const std::vector<PredictedPart> predicted =
+        predict_parts(distribution, given_centres(drawn_to_votes(distribution, observed)), observed.voted);
     for (std::size_t p = 0; p < predicted.size(); ++p) {
       if (observed.parts[p].state != State::none || !surfaces[p].allFinite()) continue;
       const double error_m = double((predicted[p].centre - surfaces[p]).norm());
@@ -198,8 +229,12 @@ PartDistribution fit_distribution(const std::vector<KnownPerson>& people, const 
   const Matrix3Xd mean = align(bodies);
   PartDistribution distribution = distribution_of(bodies, mean, depths_m);
   distribution.confidence = fit_confidence(outcomes_of(people, depths_m, distribution, false));
-  const std::vector<Outcome> voted = outcomes_of(people, depths_m, distribution, true);
-  if (!voted.empty()) distribution.voted_confidence = fit_confidence(voted);
+  if (std::ranges::all_of(people, [](const KnownPerson& person) { return person.skeleton.voted.empty(); })) {
+    return distribution;
+  }
+  distribution.voted_confidence.emplace();  // votes count
+  fit_observed(people, depths_m, body, distribution);
+  distribution.voted_confidence = fit_confidence(outcomes_of(people, depths_m, distribution, true));
   return distribution;
 }
 

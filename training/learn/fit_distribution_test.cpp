@@ -109,6 +109,23 @@ TEST(FitDistribution, PredictsPartsWithVotesWithAFairProbability) {
   EXPECT_NEAR(expected / count, right / count, 0.05);
 }
 
+TEST(FitDistribution, KnowsWhichPartsAreBetterVotedForThanSeen) {
+  const int hips = paper_body().find_part("l_hips"), hand = paper_body().find_part("l_hand");
+  Random random(8);
+  std::vector<KnownPerson> all = people(200, 4);
+  for (KnownPerson& person : all) {
+    for (std::size_t p = 0; p < person.part_centres.size(); ++p) {
+      const bool badly_seen = p == std::size_t(hips) || p == std::size_t(paper_body().parts[hips].mirror);
+      if (badly_seen) person.skeleton.parts[p].centre += scattered(random, 0.1);
+      person.skeleton.voted.push_back({person.part_centres[p] + scattered(random, badly_seen ? 0.02 : 0.1), 0.02F});
+    }
+  }
+  const PartDistribution distribution = fit_distribution(all, paper_body());
+  EXPECT_GE(distribution.parts[hips].observed_m, 0.2F);
+  EXPECT_EQ(distribution.parts[hips].observed_m, distribution.parts[paper_body().parts[hips].mirror].observed_m);
+  EXPECT_LE(distribution.parts[hand].observed_m, 0.04F);
+}
+
 TEST(FitDistribution, LeavesVotesOutWhereNobodyHasAny) {
   EXPECT_FALSE(fit_distribution(people(150, 3), paper_body()).voted_confidence);
 }

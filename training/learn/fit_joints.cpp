@@ -11,6 +11,7 @@
 #include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "vesalius/base/body_heading.h"
+#include "vesalius/predict_parts.h"
 
 namespace vesalius {
 namespace {
@@ -263,7 +264,7 @@ std::vector<JointSample> samples_of(const std::vector<KnownPerson>& people, cons
                                     const std::string& joint, const BodyModel& body) {
   std::vector<JointSample> samples;
   for (const KnownPerson& person : people) {
-    if (const auto truth = true_joint(person, set, joint, body)) samples.push_back({person.skeleton, *truth});
+    if (const auto truth = true_joint(person, set, joint, body)) samples.push_back({drawn_to_votes(body.distribution, person.skeleton), *truth});
   }
   return samples;
 }

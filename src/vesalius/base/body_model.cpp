@@ -222,7 +222,7 @@ void read_distribution(const Reader& reader, const toml::table& root, BodyModel&
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const toml::table& entry = reader.table(*parts.get(p), "part");
-    reader.expect_keys(entry, {"name", "mean", "residual", "depth", "x", "y", "z"});
+    reader.expect_keys(entry, {"name", "mean", "residual", "depth", "observed", "x", "y", "z"});
     if (reader.name(entry, "name") != body.parts[p].name) {
       reader.fail(entry, "name: expected " + in_quotes(body.parts[p].name) + ", parts in the body's order");
     }
@@ -230,6 +230,7 @@ void read_distribution(const Reader& reader, const toml::table& root, BodyModel&
     std::ranges::copy(read_lengths(reader, entry, "mean", 3), part.mean_m.begin());
     part.residual_m = reader.number(entry, "residual", 0.0, 10.0);
     if (entry.contains("depth")) part.depth_m = reader.number(entry, "depth", -1.0, 1.0);
+    if (entry.contains("observed")) part.observed_m = reader.number(entry, "observed", 0.0, 10.0);
     constexpr std::array kAxes{"x", "y", "z"};
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       part.factors_m[axis] = read_lengths(reader, entry, kAxes[axis], distribution.factors);

@@ -150,13 +150,15 @@ TEST(BodyModel, HasTheDistributionOfItsParts) {
 TEST(BodyModel, HasWhatVotesForPartsNeed) {
   std::string text = std::string(kSmall) + kDistribution;
   text.insert(text.find("confidence"), "voted_confidence = [-8.5, -2.5]\n");
-  text.insert(text.find("residual = 0.05"), "depth = 0.07\n");
+  text.insert(text.find("residual = 0.05"), "depth = 0.07\nobserved = 0.16\n");
   const PartDistribution d = parse_body_model(text, "b").distribution;
   ASSERT_TRUE(d.voted_confidence);
   EXPECT_FLOAT_EQ(d.voted_confidence->bias, -8.5F);
   EXPECT_FLOAT_EQ(d.voted_confidence->slope, -2.5F);
   EXPECT_FLOAT_EQ(d.parts[0].depth_m, 0.07F);
+  EXPECT_FLOAT_EQ(d.parts[0].observed_m, 0.16F);
   EXPECT_FLOAT_EQ(d.parts[1].depth_m, 0.F);
+  EXPECT_FLOAT_EQ(d.parts[1].observed_m, 0.F);
 }
 
 TEST(BodyModel, RefusesADistributionOfOtherParts) {
