@@ -102,6 +102,12 @@ std::vector<KnownPlace> known_places(const PartDistribution& distribution, const
   return known;
 }
 
+/// Returns the weight of votes in the mean of what is observed of a part and what is voted, by their variances.
+double share_of_votes(const PartDistribution::Part& part, const VotedPart& voted) {
+  const double ratio = double(part.observed_m) / voted_sigma_m(voted);
+  return ratio * ratio / (1.0 + ratio * ratio);
+}
+
 }  // namespace
 
 Eigen::Matrix3d best_rotation(const Matrix3Xd& from, const Matrix3Xd& onto, const VectorXd& weights) {
@@ -184,11 +190,30 @@ Skeleton drawn_to_votes(const PartDistribution& distribution, Skeleton skeleton)
   for (std::size_t p = 0; p < voted.size(); ++p) {
     SkeletonPart& part = skeleton.parts[p];
     if (part.state != State::observed) continue;
-    const double ratio = double(distribution.parts[p].observed_m) / voted_sigma_m(voted[p]);
-    const auto share = float(ratio * ratio / (1.0 + ratio * ratio));
-    part.centre += share * (surface_of(voted[p].centre, distribution.parts[p].depth_m) - part.centre);
+    const Eigen::Vector3f by_votes = surface_of(voted[p].centre, distribution.parts[p].depth_m);
+    part.centre += float(share_of_votes(distribution.parts[p], voted[p])) * (by_votes - part.centre);
   }
   return skeleton;
+}
+
+std::vector<KnownMiddle> known_middles(const PartDistribution& distribution, const Skeleton& skeleton) {
+  std::vector<KnownMiddle> middles;
+  const std::vector<VotedPart>& voted = counted_votes(distribution, skeleton);
+  const Skeleton drawn = drawn_to_votes(distribution, skeleton);
+  for (std::size_t p = 0; p < voted.size(); ++p) {
+    const PartDistribution::Part& part = distribution.parts[p];
+    const double of_votes_m = voted_sigma_m(voted[p]);
+    if (drawn.parts[p].state == State::observed) {
+      const Eigen::Vector3f& surface = drawn.parts[p].centre;
+      // Votes for parts that are seen are off by half as much as those for hidden ones.
+      const double of_both_m = 0.5 * of_votes_m * std::sqrt(share_of_votes(part, voted[p]));
+      middles.push_back(
+          {surface + part.depth_m * surface.normalized(), std::max(of_both_m, double(distribution.noise_m))});
+    } else {
+      middles.push_back({voted[p].centre, of_votes_m});
+    }
+  }
+  return middles;
 }
 
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {

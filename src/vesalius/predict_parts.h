@@ -40,8 +40,16 @@ float predicted_confidence(const PartDistribution::Confidence& confidence, float
 const std::vector<VotedPart>& counted_votes(const PartDistribution& distribution, const Skeleton& skeleton);
 
 /// Returns the skeleton with the centre of each observed part drawn to the votes for it: the mean of both, weighed by
-/// their variances. Joints and predicted parts follow from these; a part's own centre stays that of its visible surface.
+/// their variances. Joints and other parts follow from these; a part's own centre stays that of its visible surface.
 Skeleton drawn_to_votes(const PartDistribution& distribution, Skeleton skeleton);
+
+/// Where the middle of a part's volume is.
+struct KnownMiddle {
+  Eigen::Vector3f at;    ///< metres, optical frame
+  double sigma_m = 0.0;  ///< standard deviation along each axis
+};
+/// Returns this for each part, where it is observed as drawn to its votes, else by these; nothing if no votes count.
+std::vector<KnownMiddle> known_middles(const PartDistribution& distribution, const Skeleton& skeleton);
 
 /// Fills in the parts that were not observed. With a distribution in the body those get a place that reach
 /// kLeastPredictedConfidence, votes included; without, those between two observed ones, on the line between these and

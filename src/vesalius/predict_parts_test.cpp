@@ -205,6 +205,23 @@ TEST(DrawnToVotes, LiesBetweenWhatIsSeenAndVotesByTheirVariances) {
   EXPECT_FLOAT_EQ(moved(1), 0.F);
 }
 
+TEST(KnownMiddles, AreSurerOfWhatIsSeen) {
+  PartDistribution d = voted_cross();
+  for (PartDistribution::Part& part : d.parts) part.observed_m = 10.F;  // votes say where it is
+  d.parts[1].observed_m = 0.F;
+  Skeleton s = seen_at(placed(0.F));
+  s.parts[3] = {};
+  EXPECT_TRUE(known_middles(d, s).empty());
+  s.voted = votes_for(placed(0.F), 0.1F);
+  const std::vector<KnownMiddle> middles = known_middles(d, s);
+  ASSERT_EQ(middles.size(), 5U);
+  for (std::size_t p = 0; p < 5; ++p) EXPECT_LT((middles[p].at - s.voted[p].centre).norm(), 1e-5F) << p;
+  const double sigma_m = voted_sigma_m(s.voted[3]);
+  EXPECT_DOUBLE_EQ(middles[3].sigma_m, sigma_m);
+  EXPECT_NEAR(middles[2].sigma_m, 0.5 * sigma_m, 1e-3);
+  EXPECT_FLOAT_EQ(static_cast<float>(middles[1].sigma_m), d.noise_m);  // nothing that is seen is surer
+}
+
 TEST(PredictMissingParts, TakesVotesWhereTheBodySaysHowSureTheyAre) {
   BodyModel body;
   body.parts.resize(5);

@@ -264,7 +264,8 @@ std::vector<JointSample> samples_of(const std::vector<KnownPerson>& people, cons
                                     const std::string& joint, const BodyModel& body) {
   std::vector<JointSample> samples;
   for (const KnownPerson& person : people) {
-    if (const auto truth = true_joint(person, set, joint, body)) samples.push_back({drawn_to_votes(body.distribution, person.skeleton), *truth});
+    const auto truth = true_joint(person, set, joint, body);
+    if (truth) samples.push_back({drawn_to_votes(body.distribution, person.skeleton), *truth});
   }
   return samples;
 }

@@ -186,8 +186,9 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
       data.centres[p] = person.skeleton.parts[p].centre.cast<double>();
     }
   }
-  const auto is_finite = [](const VotedPart& part) { return part.centre.allFinite() && std::isfinite(part.spread_m); };
-  if (std::ranges::all_of(person.skeleton.voted, is_finite)) data.votes = person.skeleton.voted;
+  data.middles = known_middles(body_.distribution, person.skeleton);
+  const auto is_finite = [](const KnownMiddle& known) { return known.at.allFinite() && std::isfinite(known.sigma_m); };
+  if (!std::ranges::all_of(data.middles, is_finite)) data.middles.clear();
   data.expected = expected;
   if (data.expected.shape.size() == 0) forget_shape(data.expected);
   if (!data.expected.pose) {

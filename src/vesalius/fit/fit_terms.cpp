@@ -6,8 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "vesalius/vote_parts.h"
-
 namespace vesalius {
 namespace {
 
@@ -391,11 +389,12 @@ void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& p
   }
 }
 
-void FitTerms::add_votes(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const {
-  for (std::size_t p = 0; p < data.votes.size(); ++p) {
+void FitTerms::add_middles(const FitData& data, const std::vector<PlacedBone>& placed,
+                           NormalEquations& equations) const {
+  for (std::size_t p = 0; p < data.middles.size(); ++p) {
     if (surface_.of_part[p].empty()) continue;
     const PartPlace place = place_of(int(p), placed);
-    add_pull(place, place.middle - data.votes[p].centre.cast<double>(), voted_sigma_m(data.votes[p]), equations);
+    add_pull(place, place.middle - data.middles[p].at.cast<double>(), data.middles[p].sigma_m, equations);
   }
 }
 
@@ -527,7 +526,7 @@ void FitTerms::evaluate_points(const FitData& data, const BodyState& state, cons
   placed = place_bones(flesh_, state);
   equations.clear(placed);
   add_points(data, placed, assigned, equations);
-  add_votes(data, placed, equations);
+  add_middles(data, placed, equations);
   add_outline(data, placed, equations);
   if (data.expected.ground) add_ground(*data.expected.ground, placed, equations);
   add_priors(data.expected, state, equations);

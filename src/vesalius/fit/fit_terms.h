@@ -12,6 +12,7 @@
 #include "vesalius/fit/silhouette.h"
 #include "vesalius/people_options.h"
 #include "vesalius/person.h"
+#include "vesalius/predict_parts.h"
 
 namespace vesalius {
 
@@ -65,7 +66,7 @@ struct FitData {
   std::vector<PersonPoint> points;
   std::optional<Silhouette> silhouette;
   std::vector<std::optional<Eigen::Vector3d>> centres;  ///< [part] mean of its visible surface
-  std::vector<VotedPart> votes;                         ///< [part], seen or hidden; empty: nobody votes
+  std::vector<KnownMiddle> middles;                     ///< [part], seen or hidden; empty: nobody votes
   ExpectedBody expected;
 };
 
@@ -128,7 +129,7 @@ class FitTerms {
   void add_pull(const PartPlace& place, const Eigen::Vector3d& off, double sigma_m, NormalEquations& equations) const;
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
-  void add_votes(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+  void add_middles(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_ground(const Ground& ground, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_poses(const BodyState& state, NormalEquations& equations) const;

@@ -78,7 +78,7 @@ TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
   expect_true_gradient(terms, data, state);
 }
 
-TEST(FitTerms, VotesForPartsHaveTheGradientOfTheirCost) {
+TEST(FitTerms, MiddlesOfPartsHaveTheGradientOfTheirCost) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);
   FitData data = data_of_nobody();
@@ -86,7 +86,7 @@ TEST(FitTerms, VotesForPartsHaveTheGradientOfTheirCost) {
   state.shape = VectorXd::LinSpaced(builtin_flesh().shapes, -1.0, 1.0);
   // Beside somebody's middle: near to some parts, far from others.
   const Eigen::Vector3f middle = state.root.cast<float>() + Eigen::Vector3f(0.1F, -0.1F, 0.05F);
-  data.votes.assign(paper_body().parts.size(), {middle, 0.1F});
+  data.middles.assign(paper_body().parts.size(), KnownMiddle{middle, 0.1});
   expect_true_gradient(terms, data, state);
 }
 
