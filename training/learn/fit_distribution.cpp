@@ -232,7 +232,7 @@ PartDistribution fit_distribution(const std::vector<KnownPerson>& people, const 
   if (std::ranges::all_of(people, [](const KnownPerson& person) { return person.skeleton.voted.empty(); })) {
     return distribution;
   }
-  distribution.voted_confidence = PartDistribution::Confidence{};  // votes count
+  distribution.voted_confidence = PartDistribution::Confidence{};  // so that votes count from here on
   fit_observed(people, depths_m, body, distribution);
   distribution.voted_confidence = fit_confidence(outcomes_of(people, depths_m, distribution, true));
   return distribution;
