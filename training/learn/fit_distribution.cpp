@@ -145,27 +145,34 @@ PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Mat
   return distribution;
 }
 
-/// Fits how far off observed centres are beside votes: where both together are least off, the same for both sides.
+/// Returns how far off the observed parts of all people are in sum, drawn to their votes; of both sides together.
+std::vector<double> sums_off_m(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m,
+                               const BodyModel& body, const PartDistribution& distribution) {
+  std::vector<double> sums(body.parts.size(), 0.0);
+  for (const KnownPerson& person : people) {
+    const Skeleton drawn = drawn_to_votes(distribution, person.skeleton);
+    const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
+    for (std::size_t p = 0; p < surfaces.size(); ++p) {
+      if (drawn.parts[p].state != State::observed || !surfaces[p].allFinite()) continue;
+      const auto off_m = double(std::min((drawn.parts[p].centre - surfaces[p]).norm(), kOnPart_m));
+      sums[p] += off_m;
+      if (body.parts[p].mirror != int(p)) sums[body.parts[p].mirror] += off_m;
+    }
+  }
+  return sums;
+}
+
+/// Fits how far off observed centres are beside votes: where both together are least off.
 void fit_observed(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m, const BodyModel& body,
                   PartDistribution& distribution) {
-  const auto pair_of = [&](std::size_t p) { return std::min(p, std::size_t(body.parts[p].mirror)); };
-  const PartDistribution exact = distribution;
-  std::vector<double> least(exact.parts.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> least(body.parts.size(), std::numeric_limits<double>::infinity());
+  PartDistribution tried = distribution;
   for (const float observed_m : kObserved_m) {
-    PartDistribution tried = exact;
     for (PartDistribution::Part& part : tried.parts) part.observed_m = observed_m;
-    std::vector<double> off_m(least.size(), 0.0);
-    for (const KnownPerson& person : people) {
-      const Skeleton drawn = drawn_to_votes(tried, person.skeleton);
-      const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
-      for (std::size_t p = 0; p < surfaces.size(); ++p) {
-        if (drawn.parts[p].state != State::observed || !surfaces[p].allFinite()) continue;
-        off_m[pair_of(p)] += double(std::min((drawn.parts[p].centre - surfaces[p]).norm(), kOnPart_m));
-      }
-    }
-    for (std::size_t p = 0; p < least.size(); ++p) {
-      if (off_m[pair_of(p)] >= least[p]) continue;
-      least[p] = off_m[pair_of(p)];
+    const std::vector<double> sums = sums_off_m(people, depths_m, body, tried);
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      if (sums[p] >= least[p]) continue;
+      least[p] = sums[p];
       distribution.parts[p].observed_m = observed_m;
     }
   }
