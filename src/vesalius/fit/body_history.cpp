@@ -4,6 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+
+#include "vesalius/fit/flesh_sections.h"
 
 namespace vesalius {
 namespace {
@@ -25,6 +29,18 @@ Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
+/// Returns the height of the lowest flesh over the ground, below 0 under it, metres.
+double lowest_m(const FleshModel& flesh, const BodyState& state, const Ground& ground) {
+  const auto below = [&](const Eigen::Vector3f& end, float radius) {
+    return ground.height_of(end.cast<double>()) - double(radius);
+  };
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [from, to, from_radius, to_radius] : flesh_capsules(flesh, state)) {
+    lowest = std::min({lowest, below(from, from_radius), below(to, to_radius)});
+  }
+  return lowest;
+}
+
 }  // namespace
 
 ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground,
@@ -38,7 +54,7 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const 
   } else {
     fitter.forget_shape(expected);
   }
-  expected.pose = expected_state(time_s);
+  expected.pose = expected_state(fitter.flesh(), time_s);
   if (!expected.pose) return expected;
   expected.loosened = std::sqrt(std::max((time_s - last_->time_s) / kFrame_s, 1.0));
   const bool doubtful = misfit_ > kDoubtful || fitter.walks_backwards(expected);
@@ -46,7 +62,7 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const 
   return expected;
 }
 
-std::optional<BodyState> BodyHistory::expected_state(double time_s) const {
+std::optional<BodyState> BodyHistory::expected_state(const FleshModel& flesh, double time_s) const {
   if (!last_) return std::nullopt;
   const double passed_s = time_s - last_->time_s;
   if (!(passed_s >= 0.0) || passed_s > kLongest_s) return std::nullopt;
@@ -55,6 +71,10 @@ std::optional<BodyState> BodyHistory::expected_state(double time_s) const {
   for (std::size_t b = 0; b < state.local.size(); ++b) {
     state.local[b] = (state.local[b] * exp_rotation(passed_s * last_->turning[b])).normalized();
   }
+  if (!last_->ground) return state;
+  // The floor stops whoever falls, also between frames and where nobody sees it.
+  const double deepest = std::min(0.0, lowest_m(flesh, last_->state, *last_->ground));
+  state.root += std::max(0.0, deepest - lowest_m(flesh, state, *last_->ground)) * last_->ground->up;
   return state;
 }
 
@@ -96,7 +116,7 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
       turning[b] *= std::min(1.0, kFastest_rad_s / std::max(turning[b].norm(), 1e-9));
     }
   }
-  last_ = Last{found->state, of_root, turning, time_s};
+  last_ = Last{found->state, of_root, turning, ground, time_s};
   stature_m_ = found->body.stature_m;
   misfit_ = found->body.misfit;
   ++frames_;

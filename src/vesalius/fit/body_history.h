@@ -19,8 +19,9 @@ class BodyHistory {
                                 const std::optional<Ground>& ground = {},
                                 const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
 
-  /// Returns the body that is expected at `time_s`; nothing if the pose is not known any more.
-  std::optional<BodyState> expected_state(double time_s) const;
+  /// Returns the body that is expected at `time_s`: it moves on as it did, but not deeper into the floor than it was in
+  /// the last frame. Nothing if the pose is not known any more. `flesh` is what the body was fitted with.
+  std::optional<BodyState> expected_state(const FleshModel& flesh, double time_s) const;
 
   /// Forgets the pose and keeps the shape, as for somebody who comes back.
   void forget_pose() { last_.reset(); }
@@ -41,6 +42,7 @@ class BodyHistory {
     BodyState state;
     Eigen::Vector3d velocity;              ///< velocity of the root in metres a second
     std::vector<Eigen::Vector3d> turning;  ///< turning of each bone about its own axes in radians a second
+    std::optional<Ground> ground;
     double time_s;
   };
   std::optional<Last> last_;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
+#include "vesalius/fit/flesh_sections.h"
 #include "vesalius/fit/test_flesh.h"
 
 namespace vesalius {
@@ -117,13 +120,40 @@ TEST(BodyHistory, WhoWalksBackwardsIsTurnedAround) {
     for (int i = 3; i < 8; ++i) {
       EXPECT_TRUE(history.fit(fitter, unsure.frame, unsure.person, i / 30.0, {}, velocity));
     }
-    const std::optional<BodyState> state = history.expected_state(7.0 / 30.0);
+    const std::optional<BodyState> state = history.expected_state(fitter.flesh(), 7.0 / 30.0);
     return state ? -state->local[0].toRotationMatrix()(2, 2) : 0.0;
   };
   EXPECT_LT(towards_camera(Eigen::Vector3d::Zero()), -0.7);
   EXPECT_LT(towards_camera({0.0, 0.0, 1.0}), -0.7);
   EXPECT_LT(towards_camera({0.0, 0.0, -0.2}), -0.7) << "slow: it may be the noise of somebody who stands";
   EXPECT_GT(towards_camera({0.0, 0.0, -1.0}), 0.7);
+}
+
+TEST(BodyHistory, TheFloorStopsWhoeverFalls) {
+  const BodyFitter fitter(paper_body());
+  const auto lowest_y = [&](const BodyState& state) {
+    float lowest = -std::numeric_limits<float>::infinity();
+    for (const Capsule& flesh : flesh_capsules(fitter.flesh(), state)) {
+      lowest = std::max({lowest, flesh.from.y() + flesh.from_radius, flesh.to.y() + flesh.to_radius});
+    }
+    return double(lowest);
+  };
+  // 1.5 m a second downwards, and 12 cm over the floor when last seen.
+  std::vector<BodyState> states(6, test::usual_state(0.4));
+  for (int i = 0; i < 6; ++i) states[i].root.y() += 0.05 * i;
+  const Ground floor{{0.0, -1.0, 0.0}, lowest_y(states.back()) + 0.12};
+  const auto lowest_later = [&](const std::optional<Ground>& ground, double later_s) {
+    BodyHistory history;
+    for (int i = 0; i < 6; ++i) {
+      const test::SeenBody seen = test::see(states[i]);
+      EXPECT_TRUE(history.fit(fitter, seen.frame, seen.person, i / 30.0, ground));
+    }
+    const std::optional<BodyState> state = history.expected_state(fitter.flesh(), 5.0 / 30.0 + later_s);
+    return state ? floor.height_m - lowest_y(*state) : std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_LT(lowest_later({}, 0.3), -0.1) << "nobody knows of a floor";
+  EXPECT_NEAR(lowest_later(floor, 0.3), 0.0, 1e-4);
+  EXPECT_NEAR(lowest_later(floor, 1.0 / 30.0), lowest_later({}, 1.0 / 30.0), 0.03) << "not there yet";
 }
 
 TEST(BodyHistory, BadTimesForgetThePoseAndNeverFail) {

@@ -61,6 +61,13 @@ void TrackMotion::fade(double step_s) {
   covariance_ = (transition * covariance_ * transition.transpose() + noise).eval();
 }
 
+void TrackMotion::stop_at(const FloorView& floor) {
+  const float below_m = -(floor.height_m + floor.up.dot(position_));
+  if (!(below_m > 0.F)) return;
+  position_ += below_m * floor.up;
+  velocity_ -= std::min(0.F, floor.up.dot(velocity_)) * floor.up;
+}
+
 void TrackMotion::update(const Eigen::Vector3f& position, float sigma_m) {
   const double measured = covariance_(0, 0) + square(double(sigma_m));
   const Eigen::Vector2d gain = covariance_.col(0) / measured;

@@ -19,6 +19,8 @@ class TrackMotion {
 
   /// Goes on by `step_s` seconds, 0 or more.
   void predict(double step_s);
+  /// Lets somebody who has fallen to the floor lie there: not below it, and no longer falling.
+  void stop_at(const FloorView& floor);
   /// Takes a measured position.
   void update(const Eigen::Vector3f& position, float sigma_m);
 

@@ -53,6 +53,28 @@ TEST(TrackMotion, GetsLessSureWhileNobodyIsSeenAndStopsInTheEnd) {
   EXPECT_LT(motion.position().x(), 1.F + 2.F) << "a walk of a metre a second ends within 0.25 and 1.5 s";
 }
 
+TEST(TrackMotion, WhoeverFallsStopsAtTheFloor) {
+  const FloorView floor{Vector3f(0.F, -0.8F, -0.6F), 1.F, 0.F, 0.F};
+  const auto height_m = [&](const Vector3f& point) { return floor.height_m + floor.up.dot(point); };
+  TrackMotion motion({0.F, -1.F, 2.F}, 0.05F);
+  for (int i = 1; i <= 20; ++i) {
+    motion.predict(1.0 / 30.0);
+    motion.update(Vector3f(0.02F * float(i), -1.F, 2.F) - 0.025F * float(i) * floor.up, 0.05F);
+    const Vector3f before = motion.position();
+    motion.stop_at(floor);
+    ASSERT_EQ(motion.position(), before) << "over the floor nothing changes";
+  }
+  TrackMotion falling = motion;
+  falling.predict(0.8);
+  motion.predict(0.8);
+  ASSERT_LT(height_m(falling.position()), -0.1F) << "the test asks for something";
+  motion.stop_at(floor);
+  EXPECT_NEAR(height_m(motion.position()), 0.F, 1e-5F);
+  EXPECT_NEAR(floor.up.dot(motion.velocity()), 0.F, 1e-5F);
+  EXPECT_NEAR(motion.position().x(), falling.position().x(), 1e-6F) << "along the floor it goes on";
+  EXPECT_NEAR(motion.velocity().x(), falling.velocity().x(), 1e-6F);
+}
+
 TEST(TrackMotion, MeasuresDistancesInItsOwnDeviations) {
   // What the model itself draws lies at a mean squared distance of 3, one for each axis.
   Random random(9);

@@ -409,9 +409,11 @@ void PeopleTracker::State::lose_all(double time_s, TrackedFrame& out) {
 }
 
 void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
+  const std::optional<FloorView> ground = floor.view();
   parallel_for(int(tracks.size()), [&](int t) {
     Track& track = tracks[t];
     track.motion.predict(passed_s);
+    if (ground) track.motion.stop_at(*ground);
     track.expected = track.place.expected(frame, track.place_position, track.motion.position());
   });
 }
@@ -561,7 +563,9 @@ Prior PeopleTracker::expect(const Frame& frame) const {
   for (const Track* track : known) {
     Mask mask;
     std::vector<Capsule> flesh;
-    if (const std::optional<BodyState> pose = track->history.expected_state(step.time_s)) {
+    std::optional<BodyState> pose;
+    if (state_->fitter) pose = track->history.expected_state(state_->fitter->flesh(), step.time_s);
+    if (pose) {
       flesh = flesh_capsules(state_->fitter->flesh(), *pose);
     } else {
       TrackMotion motion = track->motion;
