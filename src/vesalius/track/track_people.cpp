@@ -28,7 +28,8 @@ namespace {
 constexpr std::size_t kMostTracks = 128;   // at once: no camera sees so many
 constexpr std::size_t kMostExpected = 16;  // of whom the detector is told, the surest ones
 constexpr double kExpect_s = 1.0;          // after being seen; later nobody knows the place
-constexpr float kRests = 0.6F;             // share of the pixels that are as they were where somebody still is
+constexpr float kRests = 0.6F;             // share of the pixels that are as they were where somebody still is ...
+constexpr float kStillRests = 0.4F;        // ... and where somebody goes on resting who moves a little
 constexpr float kSlow_m_s = 0.2F;          // at most, of somebody who rests
 constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who lay there
 constexpr double kNearlyAll = 0.8;         // of the pixels of somebody who is a piece of somebody else
@@ -132,7 +133,7 @@ TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const B
 }
 
 bool is_unchanged(const Track& track, const Frame& frame) {
-  return !track.place.at_border() && track.place.unchanged(frame) >= kRests;
+  return !track.place.at_border() && track.place.unchanged(frame) >= (track.rests ? kStillRests : kRests);
 }
 
 /// Returns whether somebody who was found near the floor is still there, found or not: who is down does not vanish.

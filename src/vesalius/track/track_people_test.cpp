@@ -216,6 +216,22 @@ TEST(TrackPeople, WhoRestsHasAPlaceThoughNotFound) {
   EXPECT_EQ(gone.person.box.width, 0);
 }
 
+TEST(TrackPeople, WhoRestsMayMoveALittle) {
+  // Half of the board's pixels stay as they were, then a quarter.
+  const auto shown_after = [](float moved_m, int resting_frames) {
+    Follower follower;
+    Actor actor;
+    follower.show({actor}, 30);
+    actor.found = false;
+    follower.show({actor}, resting_frames);
+    actor.trunk.x() += moved_m;
+    return !follower.show({actor}).people.at(0).person.mask.empty();
+  };
+  EXPECT_FALSE(shown_after(0.22F, 0)) << "that much is no rest to begin with";
+  EXPECT_TRUE(shown_after(0.22F, 5));
+  EXPECT_FALSE(shown_after(0.33F, 5)) << "went away";
+}
+
 /// Returns the part of somebody above or below a row.
 Person piece_of(Person person, int row, bool above) {
   for (int v = 0; v < person.mask.height(); ++v) {
