@@ -83,7 +83,8 @@ TEST(NetworkInput, IsTheSameForHalfTheFocalLengthAtHalfTheDistance) {
 
 TEST(NetworkInput, IsTheSameForEveryInstructionSet) {
   Random random(4, 0);
-  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{3, 6}, std::pair{21, 9}, std::pair{75, 53}}) {
+  for (const auto& size : {std::pair{1, 1}, std::pair{3, 6}, std::pair{21, 9}, std::pair{75, 53}}) {
+    const int width = size.first, height = size.second;
     DepthImage depth = random_depth(random, width, height);
     depth(0, 0) = 65535;
     depth(width - 1, height - 1) = 1;

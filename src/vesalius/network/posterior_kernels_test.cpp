@@ -110,7 +110,8 @@ std::vector<std::uint16_t> plainly_enlarged(const DepthImage& depth, const Poste
 TEST(EnlargeRow, TakesFromThePixelsAroundOnEveryInstructionSet) {
   Random random(5, 0);
   for (const int classes : kClasses) {
-    for (const auto& [width, height] : {std::array{1, 1}, {2, 3}, {33, 5}, {40, 8}}) {
+    for (const auto& size : {std::array{1, 1}, {2, 3}, {33, 5}, {40, 8}}) {
+      const int width = size[0], height = size[1];
       DepthImage depth(width, height, 0);
       for (std::uint16_t& mm : depth) {
         if (random.below(6) != 0) mm = static_cast<std::uint16_t>(1500 + random.below(2) * 2000 + random.below(90));
