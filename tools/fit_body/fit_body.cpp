@@ -26,7 +26,7 @@ Model model_of(const std::string& file) {
   return on_device(std::move(model));
 }
 
-FittedBodyFile fit_people(const BodyFit& fit) {
+FittedBodyFile fit_people(const FitTask& fit) {
   std::vector<KnownPerson> people;
   const BodyModel body = model_of(fit.models.front()).body;
   for (const std::string& file : fit.models) {
@@ -44,7 +44,7 @@ FittedBodyFile fit_people(const BodyFit& fit) {
   return {fit.what == "joints" ? joints_toml(people, body) : parts_toml(people, body), told};
 }
 
-FittedBodyFile fit_tracks(const BodyFit& fit) {
+FittedBodyFile fit_tracks(const FitTask& fit) {
   const Model model = model_of(fit.models.front());
   const FrameScorer scorer(model, {});
   const SequenceTrackerFactory trackers = sequence_trackers(model, {});
@@ -81,7 +81,7 @@ FittedBodyFile fit_tracks(const BodyFit& fit) {
   return {stances_toml(fitted.model), told};
 }
 
-FittedBodyFile fit_flesh(const BodyFit& fit) {
+FittedBodyFile fit_flesh(const FitTask& fit) {
   const synth::Recipe recipe = cli::make_recipe({.file = fit.recipe});
   cli::LoadedAssets loaded = cli::load_assets(recipe, fit.assets);
   synth::FleshFitOptions options;
@@ -92,7 +92,7 @@ FittedBodyFile fit_flesh(const BodyFit& fit) {
 
 }  // namespace
 
-FittedBodyFile fit_body(const BodyFit& fit) {
+FittedBodyFile fit_body(const FitTask& fit) {
   if (fit.what == "flesh") return fit_flesh(fit);
   const bool of_frames = fit.what == "joints" || fit.what == "parts";
   if (fit.models.empty() || (fit.models.size() > 1 && !of_frames)) {

@@ -8,7 +8,7 @@
 namespace vesalius {
 
 /// What is fitted, and to what.
-struct BodyFit {
+struct FitTask {
   std::string what;                    ///< joints, parts, trust, stances or flesh
   std::vector<std::string> sources{};  ///< frames with their truth; for trust and stances recordings
   std::vector<std::string> models{};   ///< find the people in them, each for itself; one for trust and stances
@@ -27,6 +27,6 @@ struct FittedBodyFile {
 
 /// Throws UsageError for models of different parts or too many of them, Error for sources that cannot be used and too
 /// few people in them.
-FittedBodyFile fit_body(const BodyFit& fit);
+FittedBodyFile fit_body(const FitTask& fit);
 
 }  // namespace vesalius

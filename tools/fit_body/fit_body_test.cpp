@@ -30,7 +30,7 @@ class FitBody : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  static std::string refusal(const BodyFit& fit) {
+  static std::string refusal(const FitTask& fit) {
     try {
       fit_body(fit);
     } catch (const Error& e) {
@@ -89,7 +89,7 @@ TEST_F(FitBody, FitsTheJointSetOfTheTruth) {
   const FittedBodyFile fitted = fit_body({.what = "joints", .sources = {path("frames")}, .models = {capsule_}});
   EXPECT_THAT(fitted.toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   EXPECT_EQ(fitted.told, "joints fitted to 1 people\n");
-  const BodyFit by_two{.what = "joints", .sources = {path("frames")}, .models = {capsule_, capsule_}};
+  const FitTask by_two{.what = "joints", .sources = {path("frames")}, .models = {capsule_, capsule_}};
   EXPECT_EQ(fit_body(by_two).told, "joints fitted to 2 people\n");
   EXPECT_THAT(refusal({.what = "trust", .sources = {path("frames")}, .models = {capsule_, capsule_}}),
               HasSubstr("trust: 2 models, expected one"));

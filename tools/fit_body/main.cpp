@@ -14,7 +14,7 @@ int run(int argc, char** argv) {
   CLI::App app(
       "Fits how bodies are: the joints of other trackers and how parts lie to each other (for tools/put_fitted.py), "
       "how far joints of fitted bodies can be trusted, stances, and flesh");
-  BodyFit fit;
+  FitTask fit;
   std::string out;
   app.add_option("WHAT", fit.what)->required()->check(CLI::IsMember({"joints", "parts", "trust", "stances", "flesh"}));
   app.add_option("OUT", out, "File to write")->required();
