@@ -14,6 +14,7 @@ besides. PUBLIC says whose a header of include/vesalius/ is: `base/image.h` belo
 6. No library of the product uses one of the workshop. The program has the workshop's commands by its build alone. The workshop
    includes of the product what is PUBLIC, and what tools/private_headers.txt lists with a reason; unit tests include all.
 7. A folder has at most 25 units besides tests, and at most the lines of C++ that tools/line_budget.txt grants it.
+8. No two headers define types of one name in one namespace: the linker would keep one's functions for both.
 
 Prints one line for each violation; exit code 1 if there are any.
 """
@@ -35,6 +36,8 @@ PRIVATE = "tools/private_headers.txt"
 BUDGET = "tools/line_budget.txt"
 FILE_HEADERS = {"fstream", "iostream", "filesystem"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+NAMESPACE = re.compile(r"^(?:inline )?namespace ([\w:]+)? ?\{|^\}\s*// namespace")
+TYPE = re.compile(r"^(?:struct|class) (?:alignas\(.*\) )?(\w+)[^;]*\{")
 CALL = re.compile(r"^vesalius_library\(\s*([^)]*)\)", re.MULTILINE)
 KEYWORDS = ("FOLDERS", "USES", "TESTS_USE", "PUBLIC", "OPENS_NO_FILES", "PRECOMPILED")
 
@@ -92,6 +95,20 @@ def includes(path):
         found = INCLUDE.match(line)
         if found:
             yield number, found.group(1) == '"', found.group(2)
+
+
+def types(path):
+    """The types that a header defines, but templates: number of the line, name with namespaces."""
+    inside, before = [], ""
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        space, found = NAMESPACE.match(line), TYPE.match(line)
+        if space and line.startswith("}"):
+            del inside[-1:]
+        elif space:
+            inside.append(space.group(1) or "")
+        elif found and not before.startswith("template"):
+            yield number, "::".join([*inside, found.group(1)])
+        before = line
 
 
 def is_for_tests(path):
@@ -278,6 +295,17 @@ class Checker:
         for name in sorted(set(budget) - {str(folder.relative_to(self.root)) for folder in by_folder}):
             self.violations.append(f"{BUDGET}: {name} has no sources")
 
+    def check_names(self):
+        """Whether types of one name are one type, in what is built into one program as well as elsewhere."""
+        first = {}
+        for path in sorted(path for folder in (*WINGS[:3], "tests", "tools", "python") for path in (self.root / folder).rglob("*.h")):
+            if path.stem.endswith("_inl"):  # once for each instruction set
+                continue
+            for number, name in types(path):
+                if name in first:
+                    self.complain(path, number, f"defines {name}, as {first[name].relative_to(self.root)} does")
+                first.setdefault(name, path)
+
     def check(self):
         if CORE not in self.libraries:
             sys.exit("src/: no CMakeLists.txt calls vesalius_library(core ...)")
@@ -291,6 +319,7 @@ class Checker:
             self.violations.append(f"src/{group[0]}.h:1: units include each other: {', '.join(group)}")
         self.check_amounts(sources)
         self.check_public()
+        self.check_names()
         return self.violations
 
 

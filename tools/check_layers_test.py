@@ -192,6 +192,14 @@ class CheckLayers(unittest.TestCase):
         changes = {f"src/draw/unit{i}.h": "" for i in range(25)}
         self.expect_violation({**changes, "tools/line_budget.txt": BUDGET}, "src/draw: 26 units")
 
+    def test_two_types_have_one_name(self):
+        one = "namespace vesalius {\nnamespace test {\nstruct Fit;\n}  // namespace test\nstruct Fit {\n};\n}  // namespace vesalius\n"
+        self.expect_violation({"src/draw/fit.h": one, "tools/fit/fit.h": one}, "tools/fit/fit.h:5: defines vesalius::Fit, as src/draw/fit.h does")
+        for other in (one.replace("struct Fit {", "template <class T>\nstruct Fit {"), one.replace("vesalius", "other"),
+                      one.replace("struct Fit {", "struct Fit;")):
+            code, output = run({"src/draw/fit.h": one, "tools/fit/fit.h": other})
+            self.assertEqual(code, 0, output)
+
     def test_no_core(self):
         code, output = run({"src/vesalius/CMakeLists.txt": ""})
         self.assertNotEqual(code, 0)
