@@ -42,7 +42,7 @@ def _log_labels(people: People, entity: str, recording: "_rerun.RecordingStream 
 def _log_person(person: Person, people: People, joints: str, entity: str,
                 recording: "_rerun.RecordingStream | None") -> None:
     parts = person.parts
-    known = ~_numpy.isnan(parts).any(axis=1)
+    known = _numpy.all(_numpy.isfinite(parts), axis=1)
     lines = [(bone.head, bone.tail) for bone in person.bones]
     lines = lines or [(parts[a], parts[b]) for a, b in people.links if known[a] and known[b]]
     classes = 1 + _numpy.flatnonzero(known)
