@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace vesalius {
 namespace {
@@ -24,7 +25,7 @@ float share(float cutoff_hz, float passed_s) {
 
 }  // namespace
 
-TrackMotion::TrackMotion(const Eigen::Vector3f& position, float sigma_m) : position_(position) {
+TrackMotion::TrackMotion(Eigen::Vector3f position, float sigma_m) : position_(std::move(position)) {
   covariance_ << square(double(sigma_m)), 0.0, 0.0, square(kUsualSpeed_m_s);
 }
 

@@ -15,7 +15,7 @@ namespace vesalius {
 class TrackMotion {
  public:
   /// `sigma_m` is the standard deviation of the measured position along each axis.
-  TrackMotion(const Eigen::Vector3f& position, float sigma_m);
+  TrackMotion(Eigen::Vector3f position, float sigma_m);
 
   /// Goes on by `step_s` seconds, 0 or more.
   void predict(double step_s);
