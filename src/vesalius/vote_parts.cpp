@@ -73,8 +73,8 @@ class Poll {
 
 double voted_sigma_m(const VotedPart& part) {
   // Chosen on rendered people, for predicted parts and for fitted bodies; half or twice as much changes little.
-  constexpr double kAgreed_m = 0.08, kOfSpread = 2.5;
-  return std::hypot(kAgreed_m, kOfSpread * double(part.spread_m));
+  constexpr double kSurest_m = 0.08, kOfSpread = 2.5;
+  return std::hypot(kSurest_m, kOfSpread * double(part.spread_m));
 }
 
 std::vector<VotedPart> vote_parts(const PartVotes& votes, const Frame& frame, const Mask& person) {
