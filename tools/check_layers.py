@@ -298,7 +298,8 @@ class Checker:
     def check_names(self):
         """Whether types of one name are one type, in what is built into one program as well as elsewhere."""
         first = {}
-        for path in sorted(path for folder in (*WINGS[:3], "tests", "tools", "python") for path in (self.root / folder).rglob("*.h")):
+        folders = {wing.split("/")[0] for wing in WINGS} | {"tools", "python"}
+        for path in sorted(path for folder in folders for path in (self.root / folder).rglob("*.h")):
             if path.stem.endswith("_inl"):  # once for each instruction set
                 continue
             for number, name in types(path):

@@ -73,8 +73,10 @@ std::optional<BodyState> BodyHistory::expected_state(const FleshModel& flesh, do
   }
   if (!last_->ground) return state;
   // The floor stops whoever falls, also between frames and where nobody sees it.
-  const double deepest = std::min(0.0, lowest_m(flesh, last_->state, *last_->ground));
-  state.root += std::max(0.0, deepest - lowest_m(flesh, state, *last_->ground)) * last_->ground->up;
+  const double now_m = lowest_m(flesh, state, *last_->ground);
+  if (!(now_m < 0.0)) return state;
+  const double before_m = std::min(0.0, lowest_m(flesh, last_->state, *last_->ground));
+  state.root += std::max(0.0, before_m - now_m) * last_->ground->up;
   return state;
 }
 
