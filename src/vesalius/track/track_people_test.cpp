@@ -164,6 +164,28 @@ TEST(TrackPeople, AGuessThatStaysWeakIsNeverSure) {
   for (const TrackedPerson& person : follower.show(std::vector<Actor>{}).people) ADD_FAILURE() << person.id;
 }
 
+TEST(TrackPeople, WhoShowsLimbsAloneKeepsTheTrunkInPlace) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  const Actor actor;
+  TrackedFrame tracked;
+  for (int i = 0; i < 20; ++i) {
+    Stage stage({actor});
+    stage.frame.time_s = i * kFrame_s;
+    if (i >= 10) {
+      for (SkeletonPart& part : stage.people[0].skeleton.parts) {
+        if (part.state == State::observed) part.state = State::predicted;
+      }
+      SkeletonPart& knee = stage.people[0].skeleton.parts[std::size_t(paper_body().find_part("l_knee"))];
+      knee.state = State::observed;
+      knee.centre = actor.trunk + Vector3f(0.1F, 0.6F, 0.F);
+    }
+    tracked = tracker.update(stage.frame, {stage.people});
+  }
+  ASSERT_EQ(tracked.people.size(), 1U);
+  EXPECT_EQ(tracked.people[0].state, TrackState::tracked);
+  EXPECT_NEAR((tracked.people[0].position - actor.trunk).norm(), 0.F, 0.02F);
+}
+
 TEST(TrackPeople, WhoIsHiddenIsPredictedComesBackOrIsLost) {
   Follower follower;
   Actor walker;

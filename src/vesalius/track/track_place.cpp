@@ -115,10 +115,10 @@ std::optional<Eigen::Vector2i> moved_pixels(const Camera& camera, const Eigen::V
 std::optional<TrunkPlace> trunk_place(const Person& person, const Frame& frame, const BodyModel& body) {
   int seen = 0;
   const Mean chest = mean_of(person.skeleton, body, "chest", seen), hips = mean_of(person.skeleton, body, "hips", seen);
-  if (chest.count > 0 && hips.count > 0 && seen > 0) {
-    // What is predicted from the other end is less certain.
-    const float unseen = seen > 2 ? 1.F : 2.F;
-    return placed(0.5F * (chest.value() + hips.value()), unseen * kTrunkSigma_m);
+  if (chest.count > 0 && hips.count > 0) {
+    // What is predicted from the other end is less certain, and what limbs alone tell still less.
+    const float sigma_m = seen > 2 ? kTrunkSigma_m : seen > 0 ? 2.F * kTrunkSigma_m : kPartsSigma_m;
+    return placed(0.5F * (chest.value() + hips.value()), sigma_m);
   }
   Mean parts;
   for (const SkeletonPart& part : person.skeleton.parts) {
