@@ -116,7 +116,7 @@ std::optional<TrunkPlace> trunk_place(const Person& person, const Frame& frame, 
   int seen = 0;
   const Mean chest = mean_of(person.skeleton, body, "chest", seen), hips = mean_of(person.skeleton, body, "hips", seen);
   if (chest.count > 0 && hips.count > 0) {
-    // What is predicted from the other end is less certain, and what limbs alone tell still less.
+    // What is predicted from the other end is less certain, what limbs or the head alone tell still less.
     const float sigma_m = seen > 2 ? kTrunkSigma_m : seen > 0 ? 2.F * kTrunkSigma_m : kPartsSigma_m;
     return placed(0.5F * (chest.value() + hips.value()), sigma_m);
   }

@@ -61,8 +61,8 @@ struct TrunkPlace {
 };
 
 /// Returns the middle of the trunk: the mean of the chest's and the hips' parts where the body names them so and both
-/// are known, the less certain the more of them are predicted; otherwise the mean of the seen parts, or without any that
-/// of the mask's points. Nothing if the frame has no reading on the mask either.
+/// are known, the less certain the more of them are predicted; otherwise the mean of the seen parts, or without any
+/// that of the mask's points. Nothing if the frame has no reading on the mask either.
 std::optional<TrunkPlace> trunk_place(const Person& person, const Frame& frame, const BodyModel& body);
 
 }  // namespace vesalius
