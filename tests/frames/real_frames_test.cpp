@@ -160,18 +160,20 @@ TEST(RealFrames, SameResultForAnyThreadCount) {
   }
 }
 
-/// The shipped models run on every `kEach`-th frame of all sets, or on all frames if VESALIUS_ALL_FRAMES=1.
+/// The shipped models run on every `kEach`-th frame of all sets, or on all frames if VESALIUS_ALL_FRAMES=1. Under
+/// sanitizers one of each of the first four sets has to do: each goes twice through every instruction set.
 // Labels: real threads
 TEST(RealFrames, SameResultForEveryInstructionSetAndThreadCount) {
   VESALIUS_NEEDS_SHARED();
-  constexpr std::size_t kEach = 48;
-  const std::size_t step =
-      std::getenv("VESALIUS_ALL_FRAMES") != nullptr ? 1 : kEach * static_cast<std::size_t>(stride());
+  constexpr std::size_t kEach = 48, kFirstSets = 4;
+  const bool every = std::getenv("VESALIUS_ALL_FRAMES") != nullptr;
+  const std::size_t step = every ? 1 : kEach * static_cast<std::size_t>(stride());
   std::vector<RealFrame> frames;
   for (const char* set : {"alina_wave", "fallseq", "uva_person", "uc3m", "tue_people", "jointvosf", "pcl",
                           "neg_7scenes_kitchen", "neg_aims", "neg_leezl_tabletop", "neg_pcl"}) {
     std::vector<RealFrame> all = load_real_set(shared, set);
     for (std::size_t i = 0; i < all.size(); i += step) frames.push_back(std::move(all[i]));
+    if (!every && stride() > 1 && frames.size() == kFirstSets) break;
   }
   for (const char* name : {"default.forest", "default.model"}) {
     const auto make = [&] { return Detector(load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/" + name)); };
