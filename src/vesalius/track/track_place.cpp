@@ -16,7 +16,7 @@ constexpr long kLeastPixels = 40;
 int tolerance_mm(int z_mm) { return 150 + int(static_cast<std::int64_t>(z_mm) * z_mm * 6 / 1'000'000); }
 
 constexpr float kTrunkSigma_m = 0.06F;   // of the mean of seen parts of the trunk, at one metre
-constexpr float kPartsSigma_m = 0.25F;   // of the mean of whatever parts are seen
+constexpr float kPartsSigma_m = 0.25F;   // of what other parts predict of it, or of the mean of those seen
 constexpr float kPointsSigma_m = 0.35F;  // of the mean of the mask's points
 constexpr float kSigmaPerZ2 = 0.005F;
 
